@@ -11,8 +11,8 @@ from . import releases
 from .interface import EnginePlugin, Tree
 from .matrix import SEED, Judged, Truths, asked, judged, suited
 from .models import acting, flexible, hostile, kinds, loops, sensed, single, soft, spacecraft, stated, transformed
-from .models.formats import formats
-from .models.readers import Reading
+from .models.files.formats import formats
+from .models.files.readers import Reading
 from .workers import Job, Worker, registry
 
 # Seconds for each engine of the smoke tier, so that what is begun then ends within a minute.

@@ -171,7 +171,7 @@ class EnginePlugin(Protocol):
         functions: Names of `functions.FUNCTIONS` that it offers -> what it calls them. A second way to the same is
             named after a colon: "inverse_dynamics:mj_rne".
         gravity: The one acceleration of gravity (3) that it knows; () where a tree may state any.
-        formats: Formats of files that its own parser reads, of "urdf", "mjcf", "sdf", "usd" (`models.readers.Reading`).
+        formats: Formats of files that its own parser reads, of "urdf", "mjcf", "sdf", "usd" (`readers.Reading`).
         slacks: Functions that it documents as approximate -> error to grant, as part of the largest entry, or the steps
             of its differences.
 

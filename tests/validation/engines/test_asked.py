@@ -10,7 +10,8 @@ from scipy.linalg import expm
 
 from validation.engines.interface import Slot, Tree
 from validation.engines.matrix import SEED, cells
-from validation.engines.models import flexible, mjcf_geoms, single
+from validation.engines.models import flexible, single
+from validation.engines.models.files import mjcf_geoms
 from validation.engines.plugins import OWN
 from validation.engines.proving.pieces import Layout
 from validation.engines.truth import derived

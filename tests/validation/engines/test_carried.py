@@ -11,8 +11,9 @@ from numpy.typing import NDArray
 from validation.engines.functions import FUNCTIONS
 from validation.engines.functions.carried import CARRIED
 from validation.engines.interface import Slot, State, vector
-from validation.engines.models import hostile, urdf_files
-from validation.engines.models.readers import BODY
+from validation.engines.models import hostile
+from validation.engines.models.files import urdf
+from validation.engines.models.files.readers import BODY
 from validation.engines.proving.pieces import Layout
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
 
@@ -44,7 +45,7 @@ def _slope(name: str) -> Array:
     ],
 )
 def test_a_plane_turns_about_its_axis(name: str, axis: tuple[float, float, float]) -> None:
-    tree = urdf_files.files()[f"urdf: {name}"].tree
+    tree = urdf.files()[f"urdf: {name}"].tree
     layout = Layout(4, 4, ((Slot("planar angle", (0, 1, 2), (0, 1, 2)),), (Slot("angle", (3,), (3,)),)))
     state = random_state(tree, layout, 6)
     turning, _ = digits(Truth(tree, layout).value(FUNCTIONS["link_turning"].truth, Point.of(state)))

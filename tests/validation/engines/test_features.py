@@ -16,8 +16,8 @@ from tests.late import needs_extra
 from validation.engines.functions import FUNCTIONS, suiting
 from validation.engines.interface import STEP, Array, Slot, State
 from validation.engines.matrix import cells
-from validation.engines.models import skel_files
-from validation.engines.models.drake_files import files
+from validation.engines.models.files import skel
+from validation.engines.models.files.drake import files
 from validation.engines.models.single import trees
 from validation.engines.plugins import OWN
 from validation.engines.plugins.features import DART, DRAKE
@@ -186,7 +186,7 @@ def test_files_of_drake_state_rotors_behind_gears() -> None:
 
 def test_a_joint_of_skel_is_placed_in_its_child() -> None:
     """The child's origin, at zero, is where its body stands: (0, 0, 0.5) of the body before, not turned."""
-    tree = skel_files.files()["skel: joint placed in its child"].tree
+    tree = skel.files()["skel: joint placed in its child"].tree
     joint, back = tree.links[1].joints
     np.testing.assert_allclose(np.array(joint.p) + np.array(joint.R) @ back.p, [0.0, 0.0, 0.5], atol=1e-15)
     np.testing.assert_allclose(np.array(joint.R) @ back.R, np.eye(3), atol=1e-15)

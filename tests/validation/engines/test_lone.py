@@ -11,7 +11,8 @@ from tests.late import needs_extra
 from validation.engines.causes.cause import stated
 from validation.engines.interface import STEP, Slot, Tree
 from validation.engines.matrix import SEED, Truths, cells, judged
-from validation.engines.models import mjcf_lines, single, usd_files
+from validation.engines.models import single
+from validation.engines.models.files import mjcf_lines, usd
 from validation.engines.plugins import OWN
 from validation.engines.proving.pieces import Layout
 from validation.engines.truth import derived, steps
@@ -99,7 +100,7 @@ def test_newton_steps_lone_bodies(name: str) -> None:
 
 
 def test_a_drive_is_read_for_radians() -> None:
-    one = usd_files.files()["usd: drive, angular"]
+    one = usd.files()["usd: drive, angular"]
     ((joint,),) = (link.joints for link in one.tree.links)
     assert np.allclose(joint.drive, (2.0 * 180.0 / np.pi, 0.25 * 180.0 / np.pi, 0.5 * np.pi / 180.0))
     truth, point = _at(replace(one.tree, asked=""), HINGE)

@@ -13,10 +13,10 @@ from tests.late import require
 from validation.engines.identities import held
 from validation.engines.interface import Array, EnginePlugin, Slot, Tree, Unsupported
 from validation.engines.matrix import SEED, Judged, Truths, cells, judged
-from validation.engines.models.formats import formats
+from validation.engines.models.files.formats import formats
+from validation.engines.models.files.readers import Reading
 from validation.engines.models.hostile import trees
 from validation.engines.models.kinds import KINDS, tree_of
-from validation.engines.models.readers import Reading
 from validation.engines.plugins import OWN
 from validation.engines.proving import scripts
 from validation.engines.proving.pieces import Layout

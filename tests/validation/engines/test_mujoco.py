@@ -15,7 +15,8 @@ import pytest
 from validation.engines.functions import FUNCTIONS
 from validation.engines.interface import Medium, Tree, Unsupported
 from validation.engines.matrix import SEED, Judged, Truths, asked, cells, judged
-from validation.engines.models import acting, formats, hostile, loops, single, transformed
+from validation.engines.models import acting, hostile, loops, single, transformed
+from validation.engines.models.files import formats
 from validation.engines.models.kinds import tree_of, turned
 from validation.engines.plugins import OWN
 from validation.engines.plugins.mujoco import plugin, stages

@@ -6,7 +6,7 @@ from pathlib import Path
 
 import pytest
 
-from validation.engines.models.formats import formats, texts
+from validation.engines.models.files.formats import formats, texts
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
 

@@ -9,7 +9,7 @@ import pytest
 
 from validation.engines.interface import Joint, Link, Slot, Tree
 from validation.engines.matrix import SEED, Truths, cells, judged
-from validation.engines.models.formats import formats
+from validation.engines.models.files.formats import formats
 from validation.engines.models.transformed import trees
 from validation.engines.plugins import OWN
 from validation.engines.proving.pieces import Layout

@@ -9,8 +9,8 @@ from itertools import zip_longest
 import numpy as np
 
 from ..interface import ORIGIN, Activation, Actuator, End, Joint, Link, Medium, Muscle, Tendon, Tree, Wrap
+from .files.readers import about
 from .kinds import OBLIQUE, link, placed, shifted, turned
-from .readers import about
 
 
 def _chain(name: str, *joints: Joint, branches: bool = False) -> tuple[Link, ...]:

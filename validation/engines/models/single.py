@@ -11,7 +11,7 @@ import numpy as np
 from ..interface import ORIGIN, Joint, Link, Rows, Tree, rows, vector
 from ..tree import FEATURES
 from ..truth.devices import COMPILED, DEVICES
-from .readers import IDENTITY, TURNED
+from .files.readers import IDENTITY, TURNED
 
 
 def _solid(name: str, volume: float, moments: tuple[float, float, float], density: float, **joint: Any) -> Tree:

@@ -8,9 +8,9 @@ from dataclasses import replace
 import numpy as np
 
 from ..interface import ORIGIN, Activation, Actuator, End, Joint, Link, Rows, Tendon, Tree, Wrap
+from .files.readers import diagonal, in_series
 from .hostile import trees as hostile_trees
 from .kinds import OBLIQUE, link, placed, turned
-from .readers import diagonal, in_series
 
 
 def _hinge(draw: np.random.Generator, **changes: float) -> Joint:

@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields, is_dataclass, replace
 from typing import Any
 
 from ..interface import IDENTITY, ORIGIN, End, Joint, Link, Rows, Tree, Vector
-from ..models.formats import texts
+from ..models.files.formats import texts
 from .pieces import Piece, Pieces
 
 # Cases that are tried for one fault.

@@ -5,8 +5,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from ..interface import Actuator, End, Link, Tendon, Tree
-from .mjcf_files import FIRST, JOINT_A, JOINT_B, MA, MB, RADIAN, file
+from ...interface import Actuator, End, Link, Tendon, Tree
+from .mjcf import FIRST, JOINT_A, JOINT_B, MA, MB, RADIAN, file
 from .readers import ACTUATORS, NEXT, READ, TENDONS, Reading, hung
 
 _JOINTS = ('<joint name="a" axis="0 0 1"/>' + MA, '<joint name="b" axis="0 1 0"/>' + MB)

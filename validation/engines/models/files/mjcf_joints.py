@@ -7,9 +7,9 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
-from ..interface import Joint, Link
+from ...interface import Joint, Link
 from . import readers
-from .mjcf_files import FIRST, JOINT_A, MA, MB, RADIAN, file
+from .mjcf import FIRST, JOINT_A, MA, MB, RADIAN, file
 from .readers import LIMITED, LIMITED_OF_SOME, LOSSES, NEXT, Reading, hung
 
 _of = partial(readers.reading, "mjcf")

@@ -6,7 +6,7 @@ import math
 from collections.abc import Iterator
 from functools import partial
 
-from ..interface import Joint, Link
+from ...interface import Joint, Link
 from . import readers
 from .readers import BODY, PASSIVE, PRINCIPAL, Reading, hung
 

@@ -7,8 +7,8 @@ from dataclasses import replace
 from functools import partial
 from typing import NamedTuple
 
-from ..interface import End, Link, Tree
-from .mjcf_files import FIRST, JOINT_A, JOINT_B, MA, MB, RADIAN, dense, file, solid_of
+from ...interface import End, Link, Tree
+from .mjcf import FIRST, JOINT_A, JOINT_B, MA, MB, RADIAN, dense, file, solid_of
 from .readers import LIMITED_OF_SOME, LOSSES, NEXT, PLACED, READ, Reading, hung
 
 _SIZES = (0.1, 0.2, 0.3)

@@ -9,7 +9,7 @@ from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
-from ..interface import Joint, Link
+from ...interface import Joint, Link
 from . import readers
 from .readers import LIMITED, LOSSES, OBLONG, PRINCIPAL, PRODUCTS, Reading, about, diagonal
 

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from ..interface import ORIGIN, Array, End, Joint, Link, Vector, rows
+from ...interface import ORIGIN, Array, End, Joint, Link, Vector, rows
 from . import readers
 from .readers import (
     ASKEW,

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from ..interface import Joint, Tree, vector
+from ...interface import Joint, Tree, vector
 from . import readers
 from .readers import LIMITED, NEXT, Reading, about, along, hung
 

@@ -8,7 +8,7 @@ from functools import partial
 
 from . import readers
 from .readers import NEXT, Reading, hung
-from .usd_files import file, shape
+from .usd import file, shape
 
 _of = partial(readers.reading, "usd")
 _API = ', "PhysicsMassAPI"'

@@ -9,7 +9,7 @@ from functools import partial
 
 import numpy as np
 
-from ..interface import ORIGIN, Actuator, End, Joint, Link, Rows, Tree, Vector, rows
+from ...interface import ORIGIN, Actuator, End, Joint, Link, Rows, Tree, Vector, rows
 from . import readers
 from .readers import (
     BODY,

@@ -8,7 +8,7 @@ from dataclasses import dataclass, replace
 
 import numpy as np
 
-from ..interface import Array, Joint, Link, Rows, Tree, Vector, rows
+from ...interface import Array, Joint, Link, Rows, Tree, Vector, rows
 
 # What a file's reading shows in: the functions that every number of it enters. PASSIVE: with springs or dampers, which
 # some engines count among their forces.

@@ -7,25 +7,13 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..interface import Joint, Tree, Unsupported
-from ..plugins import mujoco
-from ..plugins.writing import sdf, urdf
-from . import (
-    coupled_files,
-    drake_files,
-    mjcf_files,
-    mjcf_geoms,
-    mjcf_joints,
-    mjcf_lines,
-    mjcf_scopes,
-    sdf_files,
-    skel_files,
-    urdf_files,
-    usd_files,
-    usd_masses,
-)
-from .hostile import trees as hostile_trees
-from .kinds import OBLIQUE, link, placed
+from ...interface import Joint, Tree, Unsupported
+from ...plugins import mujoco
+from ...plugins.writing import sdf as sdf_writer
+from ...plugins.writing import urdf as urdf_writer
+from ..hostile import trees as hostile_trees
+from ..kinds import OBLIQUE, link, placed
+from . import coupled, drake, mjcf, mjcf_geoms, mjcf_joints, mjcf_lines, mjcf_scopes, sdf, skel, urdf, usd, usd_masses
 from .readers import Reading
 
 _WIDE = '<limit lower="-100" upper="100" effort="1e9" velocity="1e9"/>'
@@ -50,7 +38,7 @@ def _chain() -> Tree:
 
 def texts(tree: Tree) -> dict[str, str]:
     """The tree in each format that states it."""
-    described, document, model = urdf.describe(tree), mujoco.document(tree), sdf.describe(tree)
+    described, document, model = urdf_writer.describe(tree), mujoco.document(tree), sdf_writer.describe(tree)
     made: dict[str, str] = {}
     if not isinstance(described, Unsupported):
         # Not all readers keep a hinge without limits by its angle.
@@ -70,11 +58,11 @@ def formats() -> dict[str, Reading]:
         for form, text in texts(tree).items():
             name = f"{form} of {tree.name}"
             made[name] = Reading(form, text, Tree(name, tree.links, tree.gravity))
-    urdf_stated, mjcf_stated = urdf_files.files(), mjcf_files.files() | mjcf_geoms.files() | mjcf_joints.files()
+    urdf_stated, mjcf_stated = urdf.files(), mjcf.files() | mjcf_geoms.files() | mjcf_joints.files()
     mjcf_stated |= mjcf_lines.files()
     written = [one for name, one in (urdf_stated | mjcf_stated).items() if not _LONG.search(name)]
-    read = mjcf_scopes.files() | sdf_files.files() | usd_files.files() | usd_masses.files() | coupled_files.files()
-    read |= drake_files.files() | skel_files.files()
+    read = mjcf_scopes.files() | sdf.files() | usd.files() | usd_masses.files() | coupled.files()
+    read |= drake.files() | skel.files()
     return urdf_stated | mjcf_stated | read | made | dict(map(_written, written))
 
 

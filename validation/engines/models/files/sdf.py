@@ -8,8 +8,8 @@ from functools import partial
 
 import numpy as np
 
-from ..interface import IDENTITY, ORIGIN, Array, Joint, Rows, Vector, rows, vector
-from ..plugins.writing.urdf import numbers, rpy
+from ...interface import IDENTITY, ORIGIN, Array, Joint, Rows, Vector, rows, vector
+from ...plugins.writing.urdf import numbers, rpy
 from . import readers
 from .readers import (
     ASKEW,

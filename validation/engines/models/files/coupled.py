@@ -5,8 +5,8 @@ from __future__ import annotations
 import math
 from collections.abc import Iterator
 
-from ..interface import Constraint, End, Link, Tree
-from .mjcf_files import FIRST, MA, MB, RADIAN, file
+from ...interface import Constraint, End, Link, Tree
+from .mjcf import FIRST, MA, MB, RADIAN, file
 from .readers import NEXT, Reading, hung
 
 _ASKED = ("coupled_coefficients",)

@@ -9,9 +9,9 @@ from functools import partial
 
 import numpy as np
 
-from ..interface import ORIGIN, Array, Link, rows, vector
+from ...interface import ORIGIN, Array, Link, rows, vector
 from . import readers
-from .mjcf_files import FIRST, JOINT_B, RADIAN, dense, file, solid_of
+from .mjcf import FIRST, JOINT_B, RADIAN, dense, file, solid_of
 from .readers import BODY, NEXT, Reading, about, diagonal, in_series
 
 _of = partial(readers.reading, "mjcf")

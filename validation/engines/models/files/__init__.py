@@ -1,0 +1,1 @@
+"""Small files that each engine's own reader is asked about."""
