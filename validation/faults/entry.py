@@ -32,6 +32,7 @@ KINDS = (
 PACKAGES = {
     "adam-robotics": {"adam"},
     "bsk": {"Basilisk"},
+    "casadi": {"casadi"},
     "dartpy": {"dartpy"},
     "drake": {"pydrake"},
     "exudyn": {"exudyn"},
