@@ -18,7 +18,8 @@ def start(m: sf.Model, name: str) -> sf.Assembled:
 
 def motion_of_joints(m: sf.Model, frame: str) -> tuple[np.ndarray, ...]:
     p = m.frame_pose(frame, [0.4, 0.5])[0][None].astype(float)
-    return sf.joint_motion(m, frame, p.round(3), np.full((1, 3), 0.1), np.zeros((1, 3)), q=[0.5, 0.6])
+    within = np.array([[0.1, 0.0, 0.1]])  # The plane in which the links move.
+    return sf.joint_motion(m, frame, p.round(3), within, np.zeros((1, 3)), q=[0.5, 0.6])
 
 
 def rest(m: sf.Model, name: str) -> sf.Equilibrium:

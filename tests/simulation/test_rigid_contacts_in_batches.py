@@ -42,7 +42,7 @@ def starts(name: str, n: int) -> tuple[sf.Model, Any, Any]:
 
 
 def apart(events: Sequence[Any]) -> list[Any]:
-    """The first event of each instant: where two balls of a box land at once, rounding decides which are listed."""
+    """The first event of each instant: where two balls land or slide at once, rounding decides which are listed."""
     return [one for k, one in enumerate(events) if k == 0 or one.t > events[k - 1].t]
 
 
@@ -59,7 +59,9 @@ def test_batches_move_as_single_runs_do(name: str, steps: dict[str, Any]) -> Non
         assert many.outcome(i).kind == run.outcome.kind == "finished"
         assert many.q[i] == pytest.approx(run.q, abs=1e-12) and many.v[i] == pytest.approx(run.v, abs=1e-11)
         found, known = apart(many.events(i)), apart(run.events)
-        assert [(one.name, pytest.approx(one.t, abs=1e-11)) for one in found] == [(x.name, x.t) for x in known]
+        # Two corners of the box slide at once: which of them is the first, rounding decides.
+        what = [[x.name.split(maxsplit=1)[1] if name == "box" else x.name for x in each] for each in (found, known)]
+        assert what[0] == what[1] and [x.t for x in found] == pytest.approx([x.t for x in known], abs=1e-11)
         for one, other in zip(found, known, strict=True):
             assert one.energy_lost == pytest.approx(other.energy_lost, abs=1e-9)
         assert many[i].lam == pytest.approx(run.lam, rel=1e-8, abs=1e-8)
