@@ -159,7 +159,7 @@ class Packages:
         return Argument("packages", str(folder), folder.name)
 
 
-def told(folders: Iterable[Path]) -> str:
+def quoted_folders(folders: Iterable[Path]) -> str:
     """Folders as messages name them."""
     return " and ".join(f"'{str(folder):.{MAX_SHOWN}}'" for folder in islice(folders, 2))
 

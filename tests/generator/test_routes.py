@@ -1,4 +1,4 @@
-"""Routes: what the table says is what decides, what is told is what is generated, and options obey."""
+"""Routes: what the table says is what decides, what is listed is what is generated, and options obey."""
 
 from __future__ import annotations
 
@@ -42,7 +42,7 @@ def system(name: str) -> sf.System:
     return made[name]() if name in made else MODELS[name]
 
 
-def told(model: sf.Model, function: str) -> dict[str, Choice]:
+def choices_of(model: sf.Model, function: str) -> dict[str, Choice]:
     """The choices of a function by quantity."""
     return {choice.quantity: choice for choice in model.routes[function]}
 
@@ -59,7 +59,7 @@ def test_each_case_takes_its_route_and_a_contrasting_model_another(
     function, name, options = CASES[row]
     if row[1] == "routine":
         monkeypatch.setattr(routes, "MOST_STEPS", -1)
-    choice = told(sf.compile(system(name), sf.Options(**options)), function)[row[0]]  # type: ignore[arg-type]
+    choice = choices_of(sf.compile(system(name), sf.Options(**options)), function)[row[0]]  # type: ignore[arg-type]
     assert choice.method == row[1] and choice.route in ROWS
     assert choice.asked == bool(options and row[0] != "derivatives of constrained motion")
     assert choice.route not in choice.others
@@ -96,7 +96,7 @@ def test_all_relatives_of_forward_dynamics_follow_the_option(way: str) -> None:
 
 @pytest.mark.parametrize("function", [FORWARD, SLOPES, REVERSE])
 def test_graphics_processors_take_the_method_of_the_function(function: str) -> None:
-    """The kernel's text is another one by each method, and that of "auto" is the one that is told."""
+    """The kernel's text is another one by each method, and that of "auto" is the one that is listed."""
     texts = {}
     for way in ("articulated", "factors", "auto"):
         made = Compilation(MODELS["heavy_top"], sf.Options(forward_dynamics=way))
@@ -142,11 +142,11 @@ def asked_for(options: sf.Options) -> sf.Options:
 @settings(max_examples=2)
 @given(seed=st.integers(0, 10**6), n=st.integers(1, 6))
 def test_reported_routes_of_random_trees_match_the_text(seed: int, n: int) -> None:
-    """The method of the acceleration by text: that of "auto" is the one of the method told, to the character."""
+    """The method of the acceleration by text: that of "auto" is the one of the method choices_of, to the character."""
     tree = random_tree(seed, n)
     for function in (FORWARD, SLOPES):
         check_markers(tree, function, {})
-    method = told(sf.compile(tree), FORWARD)["acceleration of trees"].method
+    method = choices_of(sf.compile(tree), FORWARD)["acceleration of trees"].method
     texts = {}
     for way in ("auto", "articulated", "factors"):
         made = Compilation(tree, sf.Options((FORWARD,), (), forward_dynamics=way))

@@ -142,7 +142,7 @@ def history(
     search = Search(listed, lambda version: has_fault(found(version), wanted))
     bad = red_place(search, stated.version, f"{what}: {plugin.package}")
     yield f"{what}: {' or '.join(wanted)} at {plugin.package} {listed[bad]}"
-    yield from told(search, search.span(bad), plugin.package)
+    yield from span_lines(search, search.span(bad), plugin.package)
 
 
 def same_fault(verdict: Verdict) -> tuple[Verdict, ...]:
@@ -182,7 +182,7 @@ def red_place(search: Search, version: str, what: str) -> int:
     return bad
 
 
-def told(search: Search, span: Span, package: str) -> Iterator[str]:
+def span_lines(search: Search, span: Span, package: str) -> Iterator[str]:
     """Lines that say what was found, and which releases said nothing."""
     listed = search.releases
     yield f"first bad: {package} {span.first}" + ("" if span.before else ", or one before: none of those answers")

@@ -37,7 +37,7 @@ def stepped(scene: Scene) -> Iterator[Cell]:
     for method in ("euler", "rk4"):
         stepper = sf.Stepper(model, method=method, dt=STEP)
         several = sf.Steppers(model, MOTIONS, method=method, dt=STEP)
-        differing, error, told = 0, 0.0, 0.0
+        differing, error, largest = 0, 0.0, 0.0
         for k in (2, 5):  # The second time after another motion.
             stepper.reset(scene.q, v[k])
             for i, row in enumerate(u[k]):
@@ -47,7 +47,7 @@ def stepped(scene: Scene) -> Iterator[Cell]:
             wanted = run(k, method)
             differing += int(np.sum(stepper.q != wanted.q[-1]) + np.sum(stepper.v != wanted.v[-1]))
             made = stepper.trajectory()
-            told = max(told, off(made.t, wanted.t), off(made.q, wanted.q), off(made.u[:-1], wanted.u[:-1]))
+            largest = max(largest, off(made.t, wanted.t), off(made.q, wanted.q), off(made.u[:-1], wanted.u[:-1]))
         several.reset(scene.q, v)
         for i in range(0, STEPS, 3):
             several.step(u[:, i], 1)
@@ -57,7 +57,7 @@ def stepped(scene: Scene) -> Iterator[Cell]:
             wanted = run(k, method)
             error = max(error, off(several.q[k], wanted.q[-1]), off(several.v[k], wanted.v[-1]))
         yield Cell(f"steps by hand, {method}", float(differing), SAME, "entries of other bits")
-        yield Cell(f"trajectory of steps by hand, {method}", told, ROUNDING)
+        yield Cell(f"trajectory of steps by hand, {method}", largest, ROUNDING)
         yield Cell(f"steps of {MOTIONS} motions by hand, {method}", error, ROUNDING)
     adaptive = sf.Stepper(model, method="dopri5", dt=0.05, rtol=1e-10, atol=1e-12)
     adaptive.reset(scene.q, scene.v)
@@ -189,7 +189,7 @@ def acted(scene: Scene) -> Iterator[Cell]:
     yield Cell("actions at events", max(off(run.q[-1], q), off(run.v[-1], v)), 1e-7)
 
 
-def told(scene: Scene) -> Iterator[Cell]:
+def run_notes(scene: Scene) -> Iterator[Cell]:
     """What a run says of itself: where it was cut, across actions too; a pulse that steps pass over; silence else."""
     model, name = scene.model, scene.model.names.u[0]
     given: dict[str, Any] = {"method": "rk4", "dt": STEP}

@@ -140,8 +140,8 @@ def stored(plant: sf.System) -> Iterator[Cell]:
     yield Cell("a diagram read again", float(differing), 0.5, "entries of other bits")
     with tempfile.TemporaryDirectory() as folder:
         files = sf.export(d, "c", folder, outputs=names).folder
-        told = printed(files, "0.2", "0.05")
-    rows = np.array([[float(x) for x in row.split(",")] for row in told.splitlines()[1:]])
+        text = printed(files, "0.2", "0.05")
+    rows = np.array([[float(x) for x in row.split(",")] for row in text.splitlines()[1:]])
     wanted = np.concatenate(
         [run.t[:, None], *(np.asarray(run[name]).reshape(len(run.t), -1) for name in names)], axis=1
     )

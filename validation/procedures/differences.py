@@ -121,7 +121,7 @@ _CONDITIONS: dict[str, tuple[Any, Any, bool]] = {
 }
 
 
-def told(_: Scene) -> Iterator[Cell]:
+def first_differences(_: Scene) -> Iterator[Cell]:
     """The first difference names what was changed; what states the same otherwise has none."""
     original = robot()
     for what, (subject, entry, changes, change) in CHANGED.items():
@@ -150,7 +150,7 @@ _MECHANICAL = {"kinematics", "M", "g", "constraints"}
 def _misnamed(
     found: sf.MechanismDiff, first: Any, subject: str, entry: str, changes: set[str], mechanical: bool
 ) -> bool:
-    """Whether a difference is not told as it was made: its place, entry, what it changes, and the verdict in words."""
+    """Whether a difference does not fit what was changed: its place, entry, what it changes, and the verdict in words."""
     if first is None or found.same == mechanical or len(found.differences) != 1:
         return True
     place = first.link or first.subject
@@ -159,8 +159,8 @@ def _misnamed(
         wrong |= any((found.errors[name] > VALUE) != (name in changes) for name in ("M", "g"))
         wrong |= "frame" not in entry and (found.errors["kinematics"] > VALUE) != ("kinematics" in changes)
     verdict = " ".join(str(found).split())
-    told = f"different, first in {entry} of {first.subject}" if mechanical else "the same mechanism, with other"
-    return wrong or f": {told}" not in verdict
+    stated = f"different, first in {entry} of {first.subject}" if mechanical else "the same mechanism, with other"
+    return wrong or f": {stated}" not in verdict
 
 
 def _reframed(system: sf.System) -> sf.System:
@@ -233,8 +233,8 @@ def _remapped(original: sf.System) -> Iterator[Cell]:
     found = sf.diff(plain, lean)
     first = next((one for one in found.differences if one.entry == "axis"), None)
     unit = np.array([0.8, 0.6, 0.1]) / math.sqrt(1.01)
-    told = [] if first is None else first.there
-    yield Cell("diff of an axis that leans beyond a zero", off(np.array(told, dtype=float), unit), VALUE)
+    there = [] if first is None else first.there
+    yield Cell("diff of an axis that leans beyond a zero", off(np.array(there, dtype=float), unit), VALUE)
     cases |= {f"{what}, frames turned": (one, _reframed(other)) for what, (one, other) in cases.items()}
     functions = sf.Options(("frame_pose",), ("end",), backend="interpreter")
     for what, (one, other) in cases.items():

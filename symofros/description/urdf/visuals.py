@@ -12,7 +12,7 @@ from collections.abc import Iterator, Mapping
 from itertools import chain
 from pathlib import Path, PurePosixPath
 
-from symofros.description.packages import Packages, told
+from symofros.description.packages import Packages, quoted_folders
 from symofros.description.reading import resolved
 from symofros.description.remarks import Remarks
 from symofros.description.urdf.values import finite_numbers
@@ -117,7 +117,9 @@ class Visuals:
         """(root, place) of a package or model outside the folders around the file; searched only when needed."""
         folders = self.packages.of(name)
         if len(folders) > 1:
-            self.remarks.add("packages of one name, of which none is taken", "package", f"{name} in {told(folders)}")
+            self.remarks.add(
+                "packages of one name, of which none is taken", "package", f"{name} in {quoted_folders(folders)}"
+            )
         known = next(iter(folders), None) if len(folders) == 1 else self.packages.model(name)
         if known is not None:
             yield known, known

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from pathlib import Path
 from typing import Any
 
-from symofros.description.packages import NEIGHBOURS, Packages, told
+from symofros.description.packages import NEIGHBOURS, Packages, quoted_folders
 from symofros.description.reading import read_bytes, resolved
 from symofros.description.urdf import xacro_worker
 from symofros.description.workers import answer_of
@@ -79,7 +79,7 @@ def _unknown_package(name: str, packages: Packages, path: str | os.PathLike[str]
     return Problem(
         "xacro can't expand the file: "
         + (f"'{name:.60}' is several packages" if folders else f"there is no package '{name:.60}'"),
-        f"$(find {name:.60}), which is {told(folders)}"
+        f"$(find {name:.60}), which is {quoted_folders(folders)}"
         if folders
         else f"$(find {name:.60}), with the packages {known}",
         f"packages are that of the file, {NEIGHBOURS}, and those that you name"

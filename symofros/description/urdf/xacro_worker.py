@@ -221,7 +221,7 @@ def innermost(error: BaseException) -> BaseException:
     return error
 
 
-def told(error: BaseException) -> str:
+def message_of(error: BaseException) -> str:
     """Message of the innermost cause, and what xacro's errors around it add without repeating it."""
     first = innermost(error)
     said = [str(first).strip() or type(first).__name__]
@@ -242,7 +242,7 @@ def main() -> None:
     except ImportError:
         answer = {"absent": "xacro"}
     except BaseException as error:  # Also what is no Exception: the parent says it, whatever it is.
-        answer = {"fault": printable(told(error)), "package": printable(getattr(innermost(error), "package", ""))}
+        answer = {"fault": printable(message_of(error)), "package": printable(getattr(innermost(error), "package", ""))}
     out.write(json.dumps(answer))
 
 

@@ -14,6 +14,16 @@ static void sym_load_end_state(sym_run *r, const sym_workspace *w) {
     *s->t = s->step_end;
 }
 
+/* The cubic on [0, 1] from 0 to d, with slopes f0 and f1 at its ends. */
+static double sym_cubic(double x, double d, double f0, double f1) {
+    return x * (f0 + x * ((3.0 * d - 2.0 * f0 - f1) + x * (f0 + f1 - 2.0 * d)));
+}
+
+/* Its slope at x. */
+static double sym_cubic_slope(double x, double d, double f0, double f1) {
+    return f0 + x * (2.0 * (3.0 * d - 2.0 * f0 - f1) + x * 3.0 * (f0 + f1 - 2.0 * d));
+}
+
 /* y at x in [0, 1] of the step that has just been made, of length h. *dense_ready: whether what the polynomial needs besides
  * the step has been evaluated. Returns 0 or a status. */
 static int32_t sym_dense_output(sym_run *r, sym_workspace *w, double h, int32_t *dense_ready, double x, double *y) {
@@ -46,9 +56,8 @@ static int32_t sym_dense_output(sym_run *r, sym_workspace *w, double h, int32_t 
         *dense_ready = 1;
     }
     for (l = 0; l < n; ++l) {
-        const double y0 = l < nv ? 0.0 : r->v[l - nv], d = w->y1[l] - y0;
-        const double f0 = h * w->k[l], f1 = h * w->end_slope[l];
-        y[l] = y0 + x * (f0 + x * ((3.0 * d - 2.0 * f0 - f1) + x * (f0 + f1 - 2.0 * d)));
+        const double y0 = l < nv ? 0.0 : r->v[l - nv];
+        y[l] = y0 + sym_cubic(x, w->y1[l] - y0, h * w->k[l], h * w->end_slope[l]);
     }
     return 0;
 }

@@ -182,10 +182,8 @@ static int32_t sym_load_state_at_cut(sym_run *r, sym_workspace *w, double h, int
     status = sym_dense_output(r, w, h, dense_ready, x, w->stage);
     if (status != 0) return status;
     sym_chart_rate(r->system, w->stage, w->stage + nv, rate);
-    for (l = 0; l < nv; ++l) {
-        const double f0 = w->k[l], f1 = w->end_slope[l], d = w->y1[l] / h;
-        w->stage[nv + l] += f0 + x * (2.0 * (3.0 * d - 2.0 * f0 - f1) + x * 3.0 * (f0 + f1 - 2.0 * d)) - rate[l];
-    }
+    for (l = 0; l < nv; ++l)
+        w->stage[nv + l] += sym_cubic_slope(x, w->y1[l] / h, w->k[l], w->end_slope[l]) - rate[l];
     return sym_load_projected_state(r, r->t + x * h, w->stage);
 }
 

@@ -31,7 +31,7 @@ def shown() -> Iterator[LivePlot]:
     live.__dict__["_page"].close()
 
 
-def told(shown: LivePlot) -> tuple[dict[str, Any], list[Any]]:
+def received(shown: LivePlot) -> tuple[dict[str, Any], list[Any]]:
     """What the page knows of the run and its rows, once it knows that the run is over."""
     head: dict[str, Any] = {}
     rows: list[Any] = []
@@ -46,7 +46,7 @@ def told(shown: LivePlot) -> tuple[dict[str, Any], list[Any]]:
 
 
 def test_the_page_receives_the_samples_sent(shown: LivePlot) -> None:
-    head, rows = told(shown)
+    head, rows = received(shown)
     assert head["labels"] == ["a[0]", "a[1]", "b[0]", "b[1]"] and head["title"] == "A <b>run</b>" and head["done"]
     # What was sent before the page's program knew what it is, is not shown.
     assert len(rows) > 40 and rows[-1] == [0.5, [0.5, 1.0, 0.5, 1.0]]
@@ -71,7 +71,7 @@ def test_invalid_packets_of_other_senders_are_dropped(shown: LivePlot) -> None:
     with socket.socket(socket.AF_INET, socket.SOCK_DGRAM) as other:
         for data in (b"", b"SYMO", pack(1, 1, 9.0, np.zeros(3)), pack(1, 1, 9.0, np.full(4, np.nan))):
             other.sendto(data, ("127.0.0.1", shown.__dict__["_page"].port))
-    assert told(shown)[1][-1][0] == 0.5
+    assert received(shown)[1][-1][0] == 0.5
 
 
 def test_rows_are_bounded_and_thinned() -> None:

@@ -36,7 +36,7 @@ def program(text: str, name: str, folder: Path, q: np.ndarray, file: str) -> Non
     (folder.parent / file).write_text(start + text)
 
 
-def told(folder: Path) -> list[np.ndarray]:
+def printed(folder: Path) -> list[np.ndarray]:
     return [np.array(line.split(), dtype=float) for line in run("./example", cwd=folder.parent).splitlines()]
 
 
@@ -57,7 +57,7 @@ def test_c_calls_functions_with_named_arguments(package: tuple[str, Path]) -> No
     program(C, name, folder, q, "main.c")
     sources = (folder / f"{name}.c", folder.parent / "main.c")
     run("gcc", *STRICT, "-O0", f"-I{folder}", *sources, "-lm", "-o", "example", cwd=folder.parent)
-    check(name, q, told(folder))
+    check(name, q, printed(folder))
 
 
 def test_cpp_functions_return_eigen_maps(package: tuple[str, Path]) -> None:
@@ -71,4 +71,4 @@ def test_cpp_functions_return_eigen_maps(package: tuple[str, Path]) -> None:
     run("gcc", "-std=c99", "-O0", "-c", folder / f"{name}.c", "-o", "model.o", cwd=folder.parent)
     flags = ("-std=c++14", "-O0", "-Wall", "-Wextra", "-Wpedantic", "-Werror", f"-I{folder}", "-isystem", eigen)
     run("g++", *flags, "main.cpp", "model.o", "-lm", "-o", "example", cwd=folder.parent)
-    check(name, q, told(folder))
+    check(name, q, printed(folder))

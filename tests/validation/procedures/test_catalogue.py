@@ -151,7 +151,7 @@ def test_a_conditions_share_that_is_dropped_shows(monkeypatch: pytest.MonkeyPatc
 def test_a_difference_without_its_entry_shows(monkeypatch: pytest.MonkeyPatch) -> None:
     """Where `diff` calls everything the same, each planted difference does."""
     monkeypatch.setattr(sf, "diff", lambda one, other, diff=sf.diff: diff(one, one))
-    found = wrong(differences.told(scene("pendulum")))
+    found = wrong(differences.first_differences(scene("pendulum")))
     assert {f"diff of {what}" for what in differences.CHANGED} <= {*found}
 
 

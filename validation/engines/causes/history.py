@@ -11,7 +11,7 @@ from typing import Any
 
 from ...faults.environment import NotAskedError, day_of, default_folder, kept, own_variables, published
 from .. import parts
-from ..bisection import Search, red_place, told
+from ..bisection import Search, red_place, span_lines
 from ..proving.scripts import exception_of, fails
 from ..releases import stated
 from .cause import FOLDER, Cause
@@ -120,7 +120,7 @@ def _history(cause: Cause, proof: Proof, requires: Sequence[str], folder: Path) 
     search = Search(published(release.package), ask)
     bad = red_place(search, proof.version, release.package)
     span = search.span(bad)
-    yield from told(search, span, release.package)
+    yield from span_lines(search, span, release.package)
     store(cause, span.first if span.before else f"{span.first} or before", span.last if span.good else "")
 
 

@@ -152,9 +152,10 @@ WAYS |= {
     "coordinates_of_links:getters": Way(
         "joints' own getters", QV + _READ.replace("WHICH", "q").replace("SPEEDS", "False")
     ),
-    "coordinates_of_links:SetDefaultPositions": Way(
+    # By poses: a default quaternion may be kept as the opposite one, which is the same orientation.
+    "link_poses:SetDefaultPositions": Way(
         "SetDefaultPositions",
-        "p.SetDefaultPositions(q)\nvalue = p.GetPositionsAndVelocities(p.CreateDefaultContext())[: len(q)]",
+        "p.SetDefaultPositions(q)\nc = p.CreateDefaultContext()\n" + _poses("b.EvalPoseInWorld(c)"),
     ),
     "speeds_of_links": Way(_OF_JOINTS, f"{_BY_JOINTS}value = p.GetVelocities(c)"),
     "speeds_of_links:getters": Way("joints' own getters", QV + _READ.replace("WHICH", "v").replace("SPEEDS", "True")),

@@ -31,7 +31,7 @@ def _step(solver: str, slack: float) -> Way:
 _XPBD, _FORCES = "SolverXPBD(m, angular_damping=0.0)", "SolverSemiImplicit(m, angular_damping=0.0)"
 WAYS = {
     "step_of_wheel": _step(_XPBD, _SOFT),
-    "step_of_wheel:SolverSemiImplicit": _step(_FORCES, _LEFT),
+    "step_of_wheel:SolverSemiImplicit": _step(_FORCES, _SOFT),
     "step_of_wheel:SolverFeatherstone": Way(
         "SolverFeatherstone",
         _STEPPED.format(solver="SolverFeatherstone(m, angular_damping=0.0)")
