@@ -150,7 +150,7 @@ _MECHANICAL = {"kinematics", "M", "g", "constraints"}
 def _misnamed(
     found: sf.MechanismDiff, first: Any, subject: str, entry: str, changes: set[str], mechanical: bool
 ) -> bool:
-    """Whether a difference does not fit what was changed: its place, entry, what it changes, and the verdict in words."""
+    """Whether a difference does not fit the change: its place, entry, what it changes, and the verdict in words."""
     if first is None or found.same == mechanical or len(found.differences) != 1:
         return True
     place = first.link or first.subject
