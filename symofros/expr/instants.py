@@ -3,7 +3,7 @@
 What stands in a formula under an absolute value, a sign, a minimum, a maximum, a floor or a step makes a kink or a jump
 where it passes zero; what stands under an exponential, a hyperbolic tangent or in a denominator makes a narrow part of
 it where it is small. Only what depends on time and parameters alone is known before a run. The instants are sought by
-native/stepping/formula_instants.c, for runs and in packages.
+native/stepping/events/formula_instants.c, for runs and in packages.
 """
 
 from __future__ import annotations

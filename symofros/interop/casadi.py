@@ -244,7 +244,11 @@ def _source(compilation: Compilation, c_name: str, wanted: Mapping[str, _Differe
     sizes = {"q": len(record.q_names), "v": nv, "u": len(record.u_names), "a": nv, "par": len(record.par_names)}
     functions = {(function.name, function.frame): function for function in compilation.program.functions}
     sources = Sources(functions, record.segments)
-    texts = [compilation.source(c_name), native_text("stepping/rotations.c"), native_text("interop/symofros_casadi.c")]
+    texts = [
+        compilation.source(c_name),
+        native_text("stepping/state/rotations.c"),
+        native_text("interop/symofros_casadi.c"),
+    ]
     texts.append(sources.segments_text)
     for own, each in wanted.items():
         texts += [external.text(c_name) for external in _externals(own, each, sizes, sources, second_order)]

@@ -13,9 +13,9 @@ from symofros.native import native_number
 from symofros.runtime.calls.kernel import Array
 
 # Judges each step of a run, and has the numbers of (24).
-_JUDGE = "stepping/beams.c"
+_JUDGE = "stepping/beams/beams.c"
 # Judges the axial loads of a motion, and has the numbers of (26a) and (26c).
-_AXIAL = "stepping/axial_loads.c"
+_AXIAL = "stepping/beams/axial_loads.c"
 # Estimated error from which results carry a note.
 NOTED_ERROR = 0.01
 # Estimated error beyond which a result fails by default: up to there the estimate is calibrated (section 6).

@@ -1,4 +1,4 @@
-"""Instants at which formulas of time bend, jump or change fast: the search of native/stepping/formula_instants.c."""
+"""Instants at which formulas of time bend, jump or change fast, by native/stepping/events/formula_instants.c."""
 
 from __future__ import annotations
 

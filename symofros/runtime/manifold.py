@@ -40,7 +40,7 @@ from symofros.runtime.calls.kernel import Numbers
 from symofros.runtime.record import ModelRecord, Segment
 
 # Deviation from unit length up to which a quaternion counts as a rotation written in few digits.
-UNIT_TOLERANCE = native_number("stepping/system.c", "SYM_QUATERNION_TOLERANCE")
+UNIT_TOLERANCE = native_number("stepping/state/system.c", "SYM_QUATERNION_TOLERANCE")
 # Numbers of a batch from which on another thread makes what looks at the next one faster than NumPy does.
 _MANY = 1024
 

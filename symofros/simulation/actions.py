@@ -1,6 +1,6 @@
 """Actions of events: parameters and speeds that change, constraints that engage (docs/theory/constraints.md, 13).
 
-What is said here compiles into the tables of `native/stepping/actions.c`, which every loop of steps executes.
+What is said here compiles into the tables of `native/stepping/events/actions.c`, which every loop of steps executes.
 """
 
 from __future__ import annotations

@@ -21,7 +21,7 @@ from symofros.simulation.user_functions import check_called_with, named_function
 Indices = npt.NDArray[np.intp]
 
 # Times below this share of a period, or of the shortest time between samples, are zero but for rounding; as in
-# native/stepping/system.c.
+# native/stepping/state/system.c.
 ROUNDED_ZERO = 1e-12
 
 
@@ -64,7 +64,7 @@ class Signal(metaclass=CheckedCalls):
 
 
 # Instants that differ by less, relative to themselves, are one, and zero is one with less than that [s]; as in
-# native/stepping/system.c.
+# native/stepping/state/system.c.
 _SAME_INSTANT, _SAME_AS_ZERO = 2e-15, 1e-300
 
 

@@ -25,11 +25,11 @@ from symofros.simulation.stepping.stepper import Stepper
 # reference models lose less than 1e-4, those at steps that are far too long more than 1e-2.
 LOSS_LIMIT = 0.01
 # Intervals of a run in which adaptive steps are looked into where next to nothing happens.
-LOOKS = native_number("stepping/quiet_steps.c", "SYM_LOOKS")
+LOOKS = native_number("stepping/events/quiet_steps.c", "SYM_LOOKS")
 # Share of a step within which the end of one is another's.
-_AT_MARK = native_number("stepping/actions.c", "SYM_AT_MARK")
+_AT_MARK = native_number("stepping/events/actions.c", "SYM_AT_MARK")
 # Share of a step within which an event that acts twice acts without end.
-_AT_ONCE = native_number("stepping/instance.c", "SYM_AT_ONCE")
+_AT_ONCE = native_number("stepping/instances/instance.c", "SYM_AT_ONCE")
 # Gains of 20/s hold a loop through its singular posture (tests of the N-four-bar), and lose accuracy on long steps.
 _GAIN, _GAIN_STEP = 20.0, 0.5
 

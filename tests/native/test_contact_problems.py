@@ -20,7 +20,7 @@ def driver(tmp_path_factory: pytest.TempPathFactory) -> Path:
     gcc, program = shutil.which("gcc"), tmp_path_factory.mktemp("problems") / "run"
     if gcc is None:
         pytest.skip("needs gcc")
-    folders = [f"-I{NATIVE / name}" for name in ("model", "stepping")]
+    folders = [f"-I{NATIVE / name}" for name in ("model", "stepping", "stepping/instances")]
     flags = ["-std=gnu99", "-O1", "-Wno-unused-function", *folders]
     subprocess.run([gcc, *flags, "-o", program, DRIVER, "-lm"], check=True)
     return program

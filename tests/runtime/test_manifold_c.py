@@ -12,7 +12,7 @@ import pytest
 from hypothesis import given, settings
 
 from symofros.generator.codegen.manifold import rotations_text
-from symofros.native import native_text
+from symofros.native import amalgamated, native_text
 from symofros.runtime.build.build import build_library
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS, find_toolchain
 from symofros.runtime.calls.binding import constants
@@ -42,7 +42,7 @@ _WRAPPER = Path(__file__).with_name("manifold_wrapper.c").read_text()
 
 def test_the_rotation_file_is_current() -> None:
     """Written anew by python -m symofros.generator.codegen.manifold."""
-    assert native_text("stepping/rotations.c") == rotations_text()
+    assert native_text("stepping/state/rotations.c") == rotations_text()
 
 
 @cache
@@ -52,8 +52,11 @@ def native() -> tuple[Any, Any]:
     if toolchain is None:
         pytest.skip("no C compiler")
     source = _WRAPPER
-    for name in ("symofros_stepper.h", "manifold.c", "rotations.c"):
-        source = source.replace(f'#include "{name}"', native_text(f"stepping/{name}"))
+    for name, text in (
+        ("symofros_stepper.h", native_text("stepping/symofros_stepper.h")),
+        ("manifold.c", amalgamated("stepping/state/manifold.c")),
+    ):
+        source = source.replace(f'#include "{name}"', text)
     ffi = cffi.FFI()
     ffi.cdef(_INTERFACE)
     flags = (*DEFAULT_FLAGS, "-Wno-unused-function")

@@ -37,7 +37,7 @@ SCOPE = (
     "symofros/simulation/stepping/*.py",
     "symofros/simulation/results/*.py",
     "symofros/native/model/*",
-    "symofros/native/stepping/*",
+    "symofros/native/stepping/**/*",
     "symofros/native/diagrams/*",
 )
 # Of new code also what leaves the tool, and what runs and reads models.

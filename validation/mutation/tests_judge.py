@@ -37,22 +37,34 @@ _MIRRORS = {
         "tests/mechanics/dynamics/forward",
     ),
     "symofros/native/stepping": ("tests/simulation/stepping", "tests/simulation", "tests/native"),
-    "symofros/native/stepping/input_moments.c": ("tests/simulation/stepping", "tests/simulation/test_within_steps.py"),
+    "symofros/native/stepping/methods/input_moments.c": (
+        "tests/simulation/stepping",
+        "tests/simulation/test_within_steps.py",
+    ),
     # What packages and frameworks alone call.
-    "symofros/native/stepping/instance.c": ("tests/exports/c/test_c_package.py", "tests/exports/fmi/test_fmu.py"),
-    "symofros/native/stepping/linearize.c": ("tests/exports/fmi/test_fmu.py", "tests/exports/c/test_c_package.py"),
+    "symofros/native/stepping/instances/instance.c": (
+        "tests/exports/c/test_c_package.py",
+        "tests/exports/fmi/test_fmu.py",
+    ),
+    "symofros/native/stepping/instances/linearize.c": (
+        "tests/exports/fmi/test_fmu.py",
+        "tests/exports/c/test_c_package.py",
+    ),
     # Steps by hand, signals, and what is written of formulas.
-    "symofros/native/stepping/by_hand.c": ("tests/simulation/test_stepper.py", "tests/simulation/test_steppers.py"),
-    "symofros/native/stepping/system.c": (
+    "symofros/native/stepping/batches/by_hand.c": (
+        "tests/simulation/test_stepper.py",
+        "tests/simulation/test_steppers.py",
+    ),
+    "symofros/native/stepping/state/system.c": (
         "tests/simulation/stepping",
         "tests/simulation/test_held_samples.py",
         "tests/simulation/results/examination/test_input_impulses.py",
     ),
-    "symofros/native/stepping/rotations.c": ("tests/simulation/stepping", "tests/runtime/test_manifold_c.py"),
+    "symofros/native/stepping/state/rotations.c": ("tests/simulation/stepping", "tests/runtime/test_manifold_c.py"),
     "symofros/native/interop": ("tests/interop", "tests/interop/test_casadi.py"),
     # What judges the bending of beams, by tables of the generator.
-    "symofros/native/stepping/beams.c": _BEAM_LIMITS,
-    "symofros/native/stepping/axial_loads.c": _BEAM_LIMITS,
+    "symofros/native/stepping/beams/beams.c": _BEAM_LIMITS,
+    "symofros/native/stepping/beams/axial_loads.c": _BEAM_LIMITS,
     "symofros/generator/beams.py": (*_BEAM_LIMITS, "tests/mechanics/beams/test_rod_services.py"),
     "symofros/native/diagrams": (
         "tests/diagrams/run",

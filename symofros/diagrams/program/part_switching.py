@@ -1,4 +1,4 @@
-"""Events of all mechanisms of a part as one table, which native/stepping/actions.c executes.
+"""Events of all mechanisms of a part as one table, which native/stepping/events/actions.c executes.
 
 docs/theory/diagrams.md, section 9.
 """
@@ -67,7 +67,7 @@ def owners_of(pieces: Mapping[str, Piece], part: Part) -> tuple[Owner, ...]:
 
 
 def _rank(event: Event) -> int:
-    """Place of its kind among the events of a part, as native/stepping/actions.c has them."""
+    """Place of its kind among the events of a part, as native/stepping/events/actions.c has them."""
     return 0 if not isinstance(event, ModeEvent) else 2 if event.of_contact else 1
 
 

@@ -28,7 +28,7 @@ from symofros.simulation.stepping.tableaus import Tableau
 
 # How often an observer gets records [s], and how much earlier than its stop an instant may be, by rounding [s].
 _SENT_EVERY, _SLACK = 0.05, 1e-12
-# Of states, about, from which on compiled runs end as diverged, too (SYM_BEYOND_MOTION in native/stepping/system.c).
+# Of states, about, from which on compiled runs end as diverged: SYM_BEYOND_MOTION in native/stepping/state/system.c.
 _BEYOND_MOTION = 1e100
 
 # An instant of a run: its time, what is due, whether to record. A record: t, q, v.

@@ -19,7 +19,7 @@ SELFTEST_TOLERANCE = "1e-9"
 INTEGRATOR_HEADERS = (
     "model/symofros_model.h",
     "stepping/symofros_stepper.h",
-    "stepping/symofros_instance.h",
+    "stepping/instances/symofros_instance.h",
 )
 
 

@@ -138,7 +138,7 @@ def _rollout(name: str, record: ModelRecord, functions: Sequence[Function], prec
     """Kernels that step states by the forward dynamics among the functions."""
     forward = next(function for function in functions if function.name == "forward_dynamics")
     turning = any(segment.kind != "linear" for segment in record.segments)
-    rotations = native_text("stepping/rotations.c").replace("double", "sym_number") if turning else ""
+    rotations = native_text("stepping/state/rotations.c").replace("double", "sym_number") if turning else ""
     if precision == "single":
         # A float has no 1e-300; its 1e-30 is lost beside any angle that sin(a)/a would notice.
         rotations = _DECIMAL.sub(r"\g<0>f", rotations.replace(repr(TINY), "1e-30"))
@@ -161,7 +161,7 @@ def _forward_arguments(forward: Function, q: str, v: str) -> str:
 
 
 def _retracted(segment: Segment) -> str:
-    """A segment's part of q1 = q0 (+) theta, as in native/stepping/manifold.c."""
+    """A segment's part of q1 = q0 (+) theta, as in native/stepping/state/manifold.c."""
     q, v = segment.q, segment.v
     if segment.kind == "linear":
         return f"    for (i = 0; i < {segment.size}; ++i) q1[{q} + i] = q0[{q} + i] + theta[{v} + i];"

@@ -1,4 +1,4 @@
-/* Functions of a model by CasADi's interface of external functions: the model's C text and stepping/rotations.c stand
+/* Functions of a model by CasADi's interface of external functions: the model's C text and stepping/state/rotations.c stand
  * before this one, the functions of that interface after it (symofros/interop/casadi.py writes them). Its whole numbers are
  * as in C that CasADi generates: long long, or what its option "casadi_int" says; acados has int. */
 #ifndef casadi_int

@@ -1,4 +1,4 @@
-/* The type Step: steps of a run that is made by hand (stepping/by_hand.c), part of the module of symofros_call.c.
+/* The type Step: steps of a run that is made by hand (stepping/batches/by_hand.c), part of the module of symofros_call.c.
  *
  * Step(function, hand, n, made, plain, kept) is made by symofros/simulation/stepping/fast_step.py. A call takes inputs, an
  * array (n) or None, and a number of steps, and gives True where all were made; made(status) says what else comes of

@@ -1,5 +1,5 @@
 /* What exported packages carry: the integrator, and instances of models. */
 #include "integrator.c"
-#include "instance.c"
-#include "linearize.c"
-#include "selftest.c"
+#include "instances/instance.c"
+#include "instances/linearize.c"
+#include "instances/selftest.c"

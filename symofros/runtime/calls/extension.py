@@ -32,7 +32,7 @@ from symofros.runtime.calls.library import MANY
 LOGGER = logging.getLogger("symofros")
 _NAME = "symofros_call"
 # Deviation of the squared length of a quaternion from one that is rounding.
-UNIT_ROUNDING = native_number("stepping/system.c", "SYM_QUATERNION_ROUNDING")
+UNIT_ROUNDING = native_number("stepping/state/system.c", "SYM_QUATERNION_ROUNDING")
 
 _begun = itertools.count()
 _waiting: list[weakref.WeakMethod[Callable[[], None]]] = []

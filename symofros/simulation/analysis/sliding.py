@@ -11,8 +11,8 @@ from symofros.native import native_number
 from symofros.runtime.model import Model
 from symofros.runtime.record import SLIDES, RigidContactRecord
 
-_STILL = native_number("stepping/sticking.c", "SYM_RESTS_AT")
-_PASSED_REST = native_number("stepping/sliding_contacts.c", "SYM_PASSED_REST")
+_STILL = native_number("stepping/contacts/sticking.c", "SYM_RESTS_AT")
+_PASSED_REST = native_number("stepping/contacts/sliding_contacts.c", "SYM_PASSED_REST")
 
 
 def contact_dynamics(

@@ -24,7 +24,7 @@ from symofros.simulation.stepping.stepper import Stepper
 # Combinations of rows of G of a smaller share of the largest one are rounding: their impulse is none.
 _RANK = 1e-12
 # Distance of a ball from a plane that it touches [m].
-_TOUCHES = native_number("stepping/events.c", "SYM_TOUCHING")
+_TOUCHES = native_number("stepping/events/events.c", "SYM_TOUCHING")
 
 
 def found_of(run: BoundRun, met: Met) -> Found:

@@ -9,7 +9,7 @@ from symofros.simulation.settings import CLOSED
 from symofros.simulation.stepping.status import Status
 
 # Largest |phi| [m, rad], by weight, that engaging closes by moving bodies; the run ends where it is larger.
-ENGAGE_TOLERANCE = native_number("stepping/system.c", "SYM_ENGAGE_TOLERANCE")
+ENGAGE_TOLERANCE = native_number("stepping/state/system.c", "SYM_ENGAGE_TOLERANCE")
 
 
 class EngagedApartError(Exception):

@@ -1,4 +1,4 @@
-"""Many motions whose caller makes the steps: native/stepping/by_hand.c on groups of the batch stepper's slots."""
+"""Many motions whose caller makes the steps: native/stepping/batches/by_hand.c on the batch stepper's slots."""
 
 from __future__ import annotations
 

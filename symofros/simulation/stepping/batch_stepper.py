@@ -1,4 +1,4 @@
-"""Many trajectories of one model by native/stepping/batch_stepper.c: each thread steps a share of them."""
+"""Many trajectories of one model by native/stepping/batches/batch_stepper.c: each thread steps a share of them."""
 
 from __future__ import annotations
 

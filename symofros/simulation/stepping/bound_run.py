@@ -206,7 +206,7 @@ class BoundRun:
             system.events_free_of_inputs = int(not needs_inputs)
 
     def _fill_actions(self, actions: Actions | None) -> None:
-        """What events do: native/stepping/actions.c."""
+        """What events do: native/stepping/events/actions.c."""
         self.actions = actions
         if actions is None:
             return

@@ -1,4 +1,4 @@
-"""One run whose caller makes the steps: native/stepping/by_hand.c, its state kept and put back, its inputs noted."""
+"""One run whose caller makes the steps: native/stepping/batches/by_hand.c; its state is kept and put back."""
 
 from __future__ import annotations
 
@@ -25,7 +25,7 @@ from symofros.simulation.stepping.time_slice import TimeSlice
 # Changes of inputs that C notes between two calls that take them, and those that are kept of one run.
 _NOTED, MOST_NOTED = 256, 1 << 18
 # Steps that adaptive methods look ahead for instants of formulas of time; of those of packages as well.
-_AHEAD = native_number("stepping/instance.c", "SYM_AHEAD")
+_AHEAD = native_number("stepping/instances/instance.c", "SYM_AHEAD")
 # Steps of one call between looks at Ctrl-C.
 _AT_ONCE = 4096
 

@@ -24,7 +24,7 @@ class MetEvent(NamedTuple):
 
 
 class StepSearch:
-    """Where functions of x in [0, 1], the events along one step, arrive at zero: native/stepping/event_search.c.
+    """Where functions of x in [0, 1], the events along one step, arrive at zero: native/stepping/events/event_search.c.
 
     Args:
         directions: Of the arrivals that count: 1 rising, -1 falling, 0 both.

@@ -7,7 +7,7 @@ from typing import NamedTuple
 from symofros.base.arrays import Array
 from symofros.native import native_number
 
-_RESTS = int(native_number("stepping/actions.c", "SYM_RESTS"))
+_RESTS = int(native_number("stepping/events/actions.c", "SYM_RESTS"))
 
 
 class Done(NamedTuple):

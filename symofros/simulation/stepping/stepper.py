@@ -23,7 +23,7 @@ from symofros.simulation.stepping.status import Status
 # Events recorded between two calls that take them.
 _EVENT_ROWS = 64
 # Times what counts as an instant, strikes follow each other where they accumulate.
-_ACCUMULATION = native_number("stepping/sticking.c", "SYM_ACCUMULATION")
+_ACCUMULATION = native_number("stepping/contacts/sticking.c", "SYM_ACCUMULATION")
 # Ends of steps kept for the diagnosis of a run.
 _DIAGNOSTIC_ROWS = 512
 _TIMED = re.compile(rf"\b{TIME}\b")

@@ -103,7 +103,7 @@ def test_modes_of_mechanisms_are_chosen_each_by_its_own_rule(order: tuple[str, .
     switching = resolved.switching(part)
     assert switching is not None
     kinds = [event.words for event in switching.events if isinstance(event, ModeEvent)]
-    assert kinds == [FRICTION_WORDS] + 12 * [CONTACT_WORDS], "as native/stepping/actions.c counts them"
+    assert kinds == [FRICTION_WORDS] + 12 * [CONTACT_WORDS], "as native/stepping/events/actions.c counts them"
     run = sf.Simulation(of).run(2.0, record=0.1, **FINE)
     for name in order:
         alone, here = simulated(cases[name], **FINE), run.events[name]

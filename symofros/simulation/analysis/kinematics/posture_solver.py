@@ -1,4 +1,4 @@
-"""Searches of native/stepping/posture.c, bound to a model's functions (docs/theory/constraints.md, section 9)."""
+"""Searches by native/stepping/posture/posture.c on a model's functions: docs/theory/constraints.md, section 9."""
 
 from __future__ import annotations
 
