@@ -1,5 +1,7 @@
 from __future__ import annotations
 
+import inspect
+
 import numpy as np
 import pytest
 
@@ -94,3 +96,13 @@ def test_inverse_dynamics_leaves_out_the_inputs() -> None:
     assert m.names.u == ("u1", "q1")
     assert m.inverse_dynamics([0.0], [1.0], [4.0]) == pytest.approx([2.0 * 4.0 + 3.0])
     assert m.forward_dynamics([0.0], [1.0], [1.0, 0.5]) == pytest.approx([(5.0 - 3.0 + 0.5) / 2.0])
+
+
+def test_calls_that_state_no_time_are_at_time_zero() -> None:
+    methods = {name: inspect.signature(method) for name, method in inspect.getmembers(sf.Model, inspect.isfunction)}
+    defaults = {
+        name: method.parameters["t"].default
+        for name, method in methods.items()
+        if "t" in method.parameters and not name.startswith("_")
+    }
+    assert len(defaults) > 20 and set(defaults.values()) == {0.0}, defaults

@@ -17,11 +17,11 @@ _G, _MASS, _RATE = 9.81, 2.0, 10.0
 
 
 @cache
-def held_arm() -> sf.Model:
+def held_arm(joint_name: str = "turn") -> sf.Model:
     """A carriage on a vertical rail with an arm that a latch holds level, and an input that pulls at the carriage."""
     carriage = sf.RigidBody("carriage", sf.Joint("z", "prismatic", axis=(0, 0, 1)), sf.Inertia(1.0))
     tip = sf.Frame("tip", (1.0, 0.0, 0.0))
-    joint = sf.Joint("turn", "revolute", "carriage", axis=(0, 1, 0))
+    joint = sf.Joint(joint_name, "revolute", "carriage", axis=(0, 1, 0))
     arm = sf.RigidBody("arm", joint, sf.Inertia(_MASS, (0.5, 0, 0), (0.01, 0.1, 0.1)), (tip,))
     post = sf.RigidBody("world", None, frames=(sf.Frame("catch", (1.0, 0.0, 0.0)),))
     return sf.compile(
@@ -32,7 +32,7 @@ def held_arm() -> sf.Model:
             (sf.Input("pull"),),
             constraints=(
                 sf.Closure("latch", ("world", "catch"), ("arm", "tip"), ("z",)),
-                sf.Coupling("level", "turn"),
+                sf.Coupling("level", joint_name),
             ),
             switches=(sf.Switch("latch", "shut"),),
             virtual_power=(sf.VirtualPower("pull", {"dz": "pull"}),),
@@ -63,13 +63,14 @@ def test_a_latch_breaks_at_its_strength(force: str, options: dict[str, Any]) -> 
     assert run.q[-1, 0] == pytest.approx(fallen, abs=1e-5)
 
 
-def test_conditions_are_the_forces_that_the_model_states() -> None:
+@pytest.mark.parametrize("joint_name", ["turn", "left.turn"])
+def test_conditions_are_the_forces_that_the_model_states(joint_name: str) -> None:
     """What a joint transmits, in a motion with inertia forces: the zero is where the trajectory has that value."""
-    model = held_arm()
+    model = held_arm(joint_name)
     par, pull = {"shut": 0.0}, {"pull": "20*t*sin(3*t)"}
     events = {
-        "loaded": sf.Event("reaction.turn.fz - 5", "rising"),
-        "turned": sf.Event("reaction.turn.my - 2", "rising"),
+        "loaded": sf.Event(f"reaction.{joint_name}.fz - 5", "rising"),
+        "turned": sf.Event(f"reaction.{joint_name}.my - 2", "rising"),
     }
     run = sf.simulate(model, {"z": 0.1}, t_end=2.0, par=par, u=pull, events=events, method="dop853", rtol=1e-10)
     assert {found.name for found in run.events} == {"loaded", "turned"}, run.events

@@ -242,8 +242,6 @@ def stated_rotation(rotation: Rotation, g: Graph, bindings: Mapping[str, Edge]) 
     x = [g.constant(v) if not isinstance(v, Expression) else lower(v, g, bindings) for v in rotation.values]
     if rotation.kind == "matrix":
         return snapped(_orthonormal(Mat3(g, tuple(x))))
-    if rotation.kind == "rpy" and not any(x):
-        return Mat3.identity(g)
     if rotation.kind == "rpy":
         factors = [AxisRotation(k, g.call("cos", x[k]), g.call("sin", x[k])).matrix(g) for k in (2, 1, 0)]
         return snapped(snapped(factors[0]) @ snapped(factors[1]) @ snapped(factors[2]))

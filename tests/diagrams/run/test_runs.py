@@ -370,3 +370,12 @@ def test_a_run_says_which_signals_it_has() -> None:
     assert all(name in run and run.get(name).tolist() == [0, 1, 2] for name in ("ticks.n", "ticks", "told"))
     for name in ("ticks.m", "later.y", "", 3):
         assert name not in run and run.get(name, "none") == "none"  # type: ignore[arg-type]
+
+
+def test_inputs_of_a_diagram_without_inlets_are_refused() -> None:
+    diagram = sf.Diagram("closed")
+    diagram.add(Counter(name="ticks", period=0.1))
+    simulation = sf.Simulation(diagram)
+    for call in (simulation.run, simulation.interpret):
+        with pytest.raises(sf.DescriptionError, match="no inlet 'x'"):
+            call(0.2, inputs={"x": 1.0}, dt=0.1)

@@ -43,6 +43,27 @@ def test_momentum_is_linear_in_the_speeds_and_moves_the_mass_centre(name: str, r
     assert across <= 1e-7 * max(1.0, float(np.linalg.norm(h[:3]) * np.linalg.norm(velocity)))
 
 
+@pytest.mark.parametrize("name", ["double_pendulum", "space_arm", "spinning_beam", "soft_pendulum", "free_boom"])
+def test_the_mass_centre_is_where_the_weight_acts(name: str, rng: np.random.Generator) -> None:
+    """A field g along an axis adds -m g.p_WScm to the potential energy, of deflected beams as well."""
+    functions = ("center_of_mass", "potential_energy")
+    zero, *fields = (
+        sf.compile(
+            replace(MODELS[name], gravity=tuple(map(float, g))), sf.Options(functions=functions, backend="interpreter")
+        )
+        for g in (np.zeros(3), *np.eye(3))
+    )
+    masses = []
+    for _ in range(2):
+        q, _ = zero.random_state(rng)
+        u = rng.normal(size=zero.nu)
+        moment = np.array([zero.potential_energy(q, u=u) - m.potential_energy(q, u=u) for m in fields])
+        p_WScm = zero.center_of_mass(q, u=u)
+        masses.append(moment @ p_WScm / (p_WScm @ p_WScm))
+        np.testing.assert_allclose(masses[-1] * p_WScm, moment, rtol=0, atol=1e-10 * np.linalg.norm(moment))
+    assert masses[0] == pytest.approx(masses[1], rel=1e-10)
+
+
 @pytest.mark.parametrize("gravity", [(0.0, 0.0, 0.0), (1.0, -2.0, -9.81)], ids=["no weight", "weight"])
 @pytest.mark.parametrize("name", ["space_arm", "torque_free_body", "free_boom"])
 def test_momentum_of_a_floating_system_changes_by_its_weight(

@@ -162,6 +162,19 @@ def _noting(function: Any, said: list[float]) -> Any:
     return noted
 
 
+@pytest.mark.parametrize("method", ["generalized_alpha", "dopri5"])
+def test_notes_do_not_depend_on_when_a_run_begins(method: str) -> None:
+    """By fixed steps and by tolerances; the relay knows no time."""
+    model, q, v, given = relay()
+    span = given["t_end"]
+    coarse: dict[str, Any] = {"rtol": 1e-2, "atol": 1e-2} if method == "dopri5" else {"dt": 0.05}
+    notes = []
+    for t0 in (0.0, -span / 2, 64.0):
+        stated = {**given, **coarse, "t0": t0, "t_end": t0 + span}
+        notes.append(sf.simulate(model, q, v, method=method, **stated).outcome.notes)
+    assert notes[0] and notes[0] == notes[1] == notes[2]
+
+
 @pytest.mark.parametrize(
     ("method", "order"),
     [("euler", 1), ("semi_implicit_euler", 1), ("generalized_alpha", 2), ("variational", 2), ("rk4", 4), ("dopri5", 5)],
