@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 from validation.engines.interface import State
-from validation.engines.plugins.writing.source import Source, SourceModel, Way
+from validation.engines.plugins.writing.source import Source, SourceModel, Way, ways_of
 from validation.engines.plugins.writing.urdf import rpy
 from validation.mechanics.geometry import rotation_matrix
 
@@ -44,3 +44,29 @@ def test_functions_of_links_are_evaluated_for_those_that_are_wanted() -> None:
         assert np.array_equal(model.each(name, states, (2, 0)), [[[4.5], [3.5]], [[4.25], [3.25]]])
         assert np.array_equal(model.each(name, states), [[[3.5], [1.5], [4.5]], [[3.25], [1.25], [4.25]]])
     assert seen == [2, 2, 3, 3, 0, 0, 0, 0]
+
+
+def test_ways_are_read_from_their_text() -> None:
+    start = "d.q = q\nd.v = v\n"
+    ways = ways_of(f"""
+== bias:again | h, of m | {start}value = m.h | d.h
+== # An engine's own sum.
+# It goes on.
+== sum ~ {1e-9} | total
+{start}for k in range(2):
+    d.q += k
+
+value = d.q
+== mass | M | value = m.M
+""")
+    assert ways == {
+        "bias:again": Way("h, of m", f"{start}value = m.h | d.h"),
+        "sum": Way("total", f"{start}for k in range(2):\n    d.q += k\n\nvalue = d.q", 1e-9),
+        "mass": Way("M", "value = m.M"),
+    }
+    for wrong, why in (
+        ("== mass | M | value = 1\n== mass | N | value = 2", "two ways of one name: mass"),
+        ("== mass", "not enough values"),
+    ):
+        with pytest.raises(ValueError, match=why):
+            ways_of(wrong)

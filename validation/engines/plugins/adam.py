@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..interface import Convention, Tree
-from .writing.source import Source, SourcePlugin, Way
+from .writing.source import Source, SourcePlugin, ways_of
 from .writing.urdf import KINDS, UNIT_AXIS, Described, of_files, slots_of, through_reader
 
 _SETUP = """import casadi as ca
@@ -27,44 +27,32 @@ def _term(method: str, inputs: str, rows: str = "[cut:]") -> str:
     return f"value = np.array(robot.{method}()({inputs})).squeeze(-1){rows}"
 
 
-WAYS = {
-    "mass_matrix": Way("mass_matrix", "value = np.array(robot.mass_matrix_fun()(*place(q)))[cut:, cut:]"),
-    "mass_matrix_dq": Way(
-        "jacobian of mass_matrix",
-        """s = ca.SX.sym("s", len(q))
+WAYS = ways_of(f"""
+== mass_matrix | mass_matrix | value = np.array(robot.mass_matrix_fun()(*place(q)))[cut:, cut:]
+== mass_matrix_dq | jacobian of mass_matrix
+s = ca.SX.sym("s", len(q))
 M = ca.SX(robot.mass_matrix(np.eye(4), s))[6:, 6:]
-value = np.array(ca.Function("e", [s], [ca.densify(ca.jacobian(ca.vec(M.T), s))])(q)).reshape(*[len(q)] * 3)""",
-    ),
-    "bias": Way("bias_force", _term("bias_force_fun", "*place(q), *move(v)")),
-    "gravity": Way("gravity_term", _term("gravity_term_fun", "*place(q)")),
-    "coriolis_forces": Way("coriolis_term", _term("coriolis_term_fun", "*place(q), *move(v)")),
-    "forward_dynamics": Way(
-        "aba", "value = np.array(ca.evalf(robot.aba(*place(q), *move(v), tau[6:], {links[0]: tau[:6]}))).squeeze(-1)"
-    ),
-    "link_poses": Way(
-        "forward_kinematics",
-        """value = []
+value = np.array(ca.Function("e", [s], [ca.densify(ca.jacobian(ca.vec(M.T), s))])(q)).reshape(*[len(q)] * 3)
+== bias | bias_force | {_term("bias_force_fun", "*place(q), *move(v)")}
+== gravity | gravity_term | {_term("gravity_term_fun", "*place(q)")}
+== coriolis_forces | coriolis_term | {_term("coriolis_term_fun", "*place(q), *move(v)")}
+== forward_dynamics | aba
+value = np.array(ca.evalf(robot.aba(*place(q), *move(v), tau[6:], {{links[0]: tau[:6]}}))).squeeze(-1)
+== link_poses | forward_kinematics
+value = []
 for name in links:
     H = np.array(robot.forward_kinematics_fun(name)(*place(q)))
-    value.append([*H[:3, 3], *H[:3, :3].flat])""",
-    ),
-    "link_jacobians": Way(
-        "jacobian", "value = np.array([robot.jacobian_fun(name)(*place(q)) for name in links])[:, :, cut:]"
-    ),
-    "link_jacobian_rates": Way(
-        "jacobian_dot",
-        "value = np.array([robot.jacobian_dot_fun(name)(*place(q), *move(v)) for name in links])[:, :, cut:]",
-    ),
-    "link_velocity_products": Way(
-        "jacobian_dot",
-        "value = [np.array(robot.jacobian_dot_fun(name)(*place(q), *move(v)))[:, cut:] @ v for name in links]",
-    ),
-    "mass_centre": Way("CoM_position", _term("CoM_position_fun", "*place(q)", "")),
-    "mass_centre_jacobian": Way("CoM_jacobian", "value = np.array(robot.CoM_jacobian_fun()(*place(q)))[:, cut:]"),
-    "centroidal_matrix": Way(
-        "centroidal_momentum_matrix", "value = np.array(robot.centroidal_momentum_matrix_fun()(*place(q)))[:, cut:]"
-    ),
-}
+    value.append([*H[:3, 3], *H[:3, :3].flat])
+== link_jacobians | jacobian | value = np.array([robot.jacobian_fun(name)(*place(q)) for name in links])[:, :, cut:]
+== link_jacobian_rates | jacobian_dot
+value = np.array([robot.jacobian_dot_fun(name)(*place(q), *move(v)) for name in links])[:, :, cut:]
+== link_velocity_products | jacobian_dot
+value = [np.array(robot.jacobian_dot_fun(name)(*place(q), *move(v)))[:, cut:] @ v for name in links]
+== mass_centre | CoM_position | {_term("CoM_position_fun", "*place(q)", "")}
+== mass_centre_jacobian | CoM_jacobian | value = np.array(robot.CoM_jacobian_fun()(*place(q)))[:, cut:]
+== centroidal_matrix | centroidal_momentum_matrix
+value = np.array(robot.centroidal_momentum_matrix_fun()(*place(q)))[:, cut:]
+""")
 _BASE = "free xyzw, linear and angular before"
 
 

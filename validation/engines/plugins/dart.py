@@ -15,7 +15,7 @@ from .loops import dart_bound, dart_frames, dart_joints
 from .turns import dart as turning
 from .writing import copies
 from .writing.numbering import numbered
-from .writing.source import Source, SourcePlugin, Way, series
+from .writing.source import Source, SourcePlugin, Way, series, ways_of
 from .writing.urdf import UNIT_AXIS, has_bare_link
 
 
@@ -58,86 +58,76 @@ _FORWARD = f"{_QV}s.setForces(tau)\n"
 _NOW = "s.setTimeStep(0.0)\n"
 _WORLD = f"w = dart.simulation.World()\nw.setGravity(s.getGravity()); w.addSkeleton(s); w.setTimeStep({STEP})\n"
 
-WAYS = {
-    "mass_matrix": Way("getMassMatrix", f"{_Q}value = s.getMassMatrix()"),
-    "mass_matrix_inverse": Way("getInvMassMatrix", f"{_Q}value = s.getInvMassMatrix()"),
-    "bias": Way("getCoriolisAndGravityForces", f"{_QV}value = s.getCoriolisAndGravityForces()"),
-    "coriolis_forces": Way("getCoriolisForces", f"{_QV}value = s.getCoriolisForces()"),
-    "gravity": Way("getGravityForces", f"{_Q}value = s.getGravityForces()"),
-    "inverse_dynamics": Way("computeInverseDynamics", f"{_QVA}s.computeInverseDynamics()\nvalue = s.getForces()"),
-    "joint_speed_limits": Way("getVelocityUpperLimits", "value = s.getVelocityUpperLimits()"),
-    "joint_force_limits": Way("getForceUpperLimits", "value = s.getForceUpperLimits()"),
-    **{
-        name: Way(native, f"value = [s.getDof(k).{native}() for k in range(s.getNumDofs())]")
-        for name, native in (
-            ("joint_dampings", "getDampingCoefficient"),
-            ("joint_frictions", "getCoulombFriction"),
-            ("joint_stiffnesses", "getSpringStiffness"),
-        )
-    },
-    "joint_limits": Way(
-        "getPositionLowerLimits, getPositionUpperLimits",
-        "value = np.c_[s.getPositionLowerLimits(), s.getPositionUpperLimits()]",
-    ),
-    "joint_limits_of_some": Way(
-        "getPositionLowerLimits, getPositionUpperLimits",
-        "x = np.c_[s.getPositionLowerLimits(), s.getPositionUpperLimits()]\nvalue = np.where(np.isfinite(x), x, 0.0)",
-    ),
-    "joint_wrenches": Way("getBodyForce", _linear_first("b.getBodyForce()", f"{_QVA}s.computeInverseDynamics()\n")),
-    "joint_wrenches_driven": Way(
-        "computeForwardDynamics, getBodyForce",
-        _linear_first("b.getBodyForce()", f"{_FORWARD}{_NOW}s.computeForwardDynamics()\n"),
-    ),
-    "forward_dynamics": Way(
-        "computeForwardDynamics",
-        f"{_FORWARD}{_NOW}s.computeForwardDynamics()\nvalue = s.getAccelerations()",
-    ),
-    "step_stiffness_implicit": Way(
-        "World.step",
-        f"import numpy as np\n{_WORLD}{_FORWARD}w.step()\nvalue = np.r_[s.getPositions(), s.getVelocities()]",
-    ),
-    "kinetic_energy": Way("computeKineticEnergy", f"{_QV}value = s.computeKineticEnergy()"),
-    "potential_energy": Way("computePotentialEnergy", f"{_Q}value = s.computePotentialEnergy()"),
-    "link_poses": Way(
-        "getTransform",
-        f"{_Q}X = [b.getTransform() for b in links]\nvalue = [[*x.translation(), *x.rotation().flat] for x in X]",
-    ),
-    "link_velocities": Way(
-        "getLinearVelocity", f"{_QV}value = [[*b.getLinearVelocity(), *b.getAngularVelocity()] for b in links]"
-    ),
-    "link_turning": Way("getAngularVelocity", f"{_QV}value = [b.getAngularVelocity() for b in links]"),
-    "velocity_local": Way("getSpatialVelocity", _linear_first("b.getSpatialVelocity()", _QV)),
-    "acceleration_local": Way("getSpatialAcceleration", _linear_first("b.getSpatialAcceleration()", _QVA)),
-    "link_accelerations": Way(
-        "getLinearAcceleration",
-        f"{_QVA}value = [[*b.getLinearAcceleration(), *b.getAngularAcceleration()] for b in links]",
-    ),
-    "link_jacobians": Way("getJacobian, World", _linear_first("s.getJacobian(b, dart.dynamics.Frame.World())", _Q)),
-    "jacobian_local": Way("getJacobian", _linear_first("s.getJacobian(b)", _Q)),
-    "link_jacobian_rates": Way(
-        "getJacobianClassicDeriv, World",
-        _linear_first("s.getJacobianClassicDeriv(b, dart.dynamics.Frame.World())", _QV),
-    ),
-    # Rates of spatial vectors, in the body's axes: those of the Jacobian at the world's origin, transformed.
-    "jacobian_rate_world": Way(
-        "getJacobianSpatialDeriv",
-        f"""{_QV}value = []
+WAYS = (
+    {
+        "mass_matrix": Way("getMassMatrix", f"{_Q}value = s.getMassMatrix()"),
+        "mass_matrix_inverse": Way("getInvMassMatrix", f"{_Q}value = s.getInvMassMatrix()"),
+        "bias": Way("getCoriolisAndGravityForces", f"{_QV}value = s.getCoriolisAndGravityForces()"),
+        "coriolis_forces": Way("getCoriolisForces", f"{_QV}value = s.getCoriolisForces()"),
+        "gravity": Way("getGravityForces", f"{_Q}value = s.getGravityForces()"),
+        "inverse_dynamics": Way("computeInverseDynamics", f"{_QVA}s.computeInverseDynamics()\nvalue = s.getForces()"),
+        "joint_speed_limits": Way("getVelocityUpperLimits", "value = s.getVelocityUpperLimits()"),
+        "joint_force_limits": Way("getForceUpperLimits", "value = s.getForceUpperLimits()"),
+        **{
+            name: Way(native, f"value = [s.getDof(k).{native}() for k in range(s.getNumDofs())]")
+            for name, native in (
+                ("joint_dampings", "getDampingCoefficient"),
+                ("joint_frictions", "getCoulombFriction"),
+                ("joint_stiffnesses", "getSpringStiffness"),
+            )
+        },
+    }
+    | ways_of("""
+== joint_limits | getPositionLowerLimits, getPositionUpperLimits
+value = np.c_[s.getPositionLowerLimits(), s.getPositionUpperLimits()]
+== joint_limits_of_some | getPositionLowerLimits, getPositionUpperLimits
+x = np.c_[s.getPositionLowerLimits(), s.getPositionUpperLimits()]
+value = np.where(np.isfinite(x), x, 0.0)
+""")
+    | {
+        "joint_wrenches": Way("getBodyForce", _linear_first("b.getBodyForce()", f"{_QVA}s.computeInverseDynamics()\n")),
+        "joint_wrenches_driven": Way(
+            "computeForwardDynamics, getBodyForce",
+            _linear_first("b.getBodyForce()", f"{_FORWARD}{_NOW}s.computeForwardDynamics()\n"),
+        ),
+    }
+    | ways_of(f"""
+== forward_dynamics | computeForwardDynamics | {_FORWARD}{_NOW}s.computeForwardDynamics()\nvalue = s.getAccelerations()
+== step_stiffness_implicit | World.step
+import numpy as np
+{_WORLD}{_FORWARD}w.step()
+value = np.r_[s.getPositions(), s.getVelocities()]
+== kinetic_energy | computeKineticEnergy | {_QV}value = s.computeKineticEnergy()
+== potential_energy | computePotentialEnergy | {_Q}value = s.computePotentialEnergy()
+== link_poses | getTransform
+{_Q}X = [b.getTransform() for b in links]
+value = [[*x.translation(), *x.rotation().flat] for x in X]
+== link_velocities | getLinearVelocity | {_QV}value = [[*b.getLinearVelocity(), *b.getAngularVelocity()] for b in links]
+== link_turning | getAngularVelocity | {_QV}value = [b.getAngularVelocity() for b in links]
+== velocity_local | getSpatialVelocity | {_linear_first("b.getSpatialVelocity()", _QV)}
+== acceleration_local | getSpatialAcceleration | {_linear_first("b.getSpatialAcceleration()", _QVA)}
+== link_accelerations | getLinearAcceleration
+{_QVA}value = [[*b.getLinearAcceleration(), *b.getAngularAcceleration()] for b in links]
+== link_jacobians | getJacobian, World | {_linear_first("s.getJacobian(b, dart.dynamics.Frame.World())", _Q)}
+== jacobian_local | getJacobian | {_linear_first("s.getJacobian(b)", _Q)}
+== link_jacobian_rates | getJacobianClassicDeriv, World
+{_linear_first("s.getJacobianClassicDeriv(b, dart.dynamics.Frame.World())", _QV)}
+== # Rates of spatial vectors, in the body's axes: those of the Jacobian at the world's origin, transformed.
+== jacobian_rate_world | getJacobianSpatialDeriv
+{_QV}value = []
 for b in links:
     R, p = b.getTransform().rotation(), b.getTransform().translation()
     J = s.getJacobianSpatialDeriv(b)
-    value.append([*(R @ J[3:] + np.cross(p, (R @ J[:3]).T).T), *(R @ J[:3])])""",
-    ),
-    "mass_centre": Way("getCOM", f"{_Q}value = s.getCOM()"),
-    "mass_centre_jacobian": Way("getCOMLinearJacobian", f"{_Q}value = s.getCOMLinearJacobian()"),
-    "mass_centre_velocity_products": Way(
-        "getCOMLinearJacobianDeriv", f"{_QV}value = s.getCOMLinearJacobianDeriv() @ v"
-    ),
-    "mass_centre_velocity_products:getCOMLinearAcceleration": Way(
-        "getCOMLinearAcceleration", f"{_STILL}value = s.getCOMLinearAcceleration()"
-    ),
-    "integrate": Way("integratePositions", f"{_INTEGRATED}value = s.getPositions()"),
-    "difference": Way("getPositionDifferences", f"{_INTEGRATED}value = s.getPositionDifferences(s.getPositions(), q)"),
-}
+    value.append([*(R @ J[3:] + np.cross(p, (R @ J[:3]).T).T), *(R @ J[:3])])
+== mass_centre | getCOM | {_Q}value = s.getCOM()
+== mass_centre_jacobian | getCOMLinearJacobian | {_Q}value = s.getCOMLinearJacobian()
+== mass_centre_velocity_products | getCOMLinearJacobianDeriv | {_QV}value = s.getCOMLinearJacobianDeriv() @ v
+== mass_centre_velocity_products:getCOMLinearAcceleration | getCOMLinearAcceleration
+{_STILL}value = s.getCOMLinearAcceleration()
+== integrate | integratePositions | {_INTEGRATED}value = s.getPositions()
+== difference | getPositionDifferences | {_INTEGRATED}value = s.getPositionDifferences(s.getPositions(), q)
+""")
+)
 _COPIED = {
     "clone": "s = s.clone()\nlinks = [s.getBodyNode(b.getName()) for b in links]\n",
     # Joints of a copy, along axes and at places of their own, are made as those that they copy.

@@ -19,7 +19,7 @@ from .loops import drake_points as points
 from .loops.drake_forces import FORCES, QV, Q
 from .turns import drake as turning
 from .writing import copies, urdf
-from .writing.source import Source, SourcePlugin, Way, series
+from .writing.source import Source, SourcePlugin, series, ways_of
 from .writing.urdf import MESH_WITHIN, UNIT_AXIS
 
 
@@ -65,63 +65,44 @@ _FRAMES = f"{_KV}frames = [b.body_frame() for b in links]\n"
 _JACOBIANS = (
     "value = [np.roll(p.CalcJacobianSpatialVelocity(c, kV, f, [0, 0, 0], W, {about}), 3, axis=0) for f in frames]"
 )
-WAYS = {
-    "mass_matrix": Way("CalcMassMatrix", f"{Q}value = p.CalcMassMatrix(c)"),
-    "mass_matrix:CalcMassMatrixViaInverseDynamics": Way(
-        "CalcMassMatrixViaInverseDynamics", f"{Q}value = p.CalcMassMatrixViaInverseDynamics(c)"
-    ),
-    "coriolis_forces": Way("CalcBiasTerm", f"{QV}value = p.CalcBiasTerm(c)"),
-    "gravity": Way("CalcGravityGeneralizedForces", f"{Q}value = -p.CalcGravityGeneralizedForces(c)"),
-    "inverse_dynamics": Way("CalcInverseDynamics", f"{QV}{FORCES}value = p.CalcInverseDynamics(c, a, forces)"),
-    "bias": Way("CalcInverseDynamics", f"{QV}{FORCES}value = p.CalcInverseDynamics(c, 0 * v, forces)"),
-    "forward_dynamics": Way(
-        "EvalTimeDerivatives",
-        f"{QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)\n"
-        "value = p.EvalTimeDerivatives(c).CopyToVector()[len(q):]",
-    ),
-    "kinetic_energy": Way("CalcKineticEnergy", f"{QV}value = p.CalcKineticEnergy(c)"),
-    "potential_energy": Way("CalcPotentialEnergy", f"{Q}value = p.CalcPotentialEnergy(c)"),
-    "link_poses": Way(
-        "EvalBodyPoseInWorld",
-        f"{Q}poses = [p.EvalBodyPoseInWorld(c, b) for b in links]\n"
-        "value = [[*x.translation(), *x.rotation().matrix().flat] for x in poses]",
-    ),
-    "link_velocities": Way(
-        "EvalBodySpatialVelocityInWorld",
-        f"{QV}twists = [p.EvalBodySpatialVelocityInWorld(c, b) for b in links]\n"
-        "value = [[*t.translational(), *t.rotational()] for t in twists]",
-    ),
-    "link_accelerations": Way(
-        "CalcSpatialAccelerationsFromVdot",
-        f"{QV}every = p.CalcSpatialAccelerationsFromVdot(c, a)\n"
-        "value = [[*every[b.index()].translational(), *every[b.index()].rotational()] for b in links]",
-    ),
-    "link_velocity_products": Way(
-        "CalcBiasSpatialAcceleration",
-        f"{QV}{_FRAMES}products = [p.CalcBiasSpatialAcceleration(c, kV, f, [0, 0, 0], W, W) for f in frames]\n"
-        "value = [[*x.translational(), *x.rotational()] for x in products]",
-    ),
-    "link_jacobians": Way("CalcJacobianSpatialVelocity", f"{Q}{_FRAMES}{_JACOBIANS.format(about='W')}"),
-    "jacobian_local": Way("CalcJacobianSpatialVelocity", f"{Q}{_FRAMES}{_JACOBIANS.format(about='f')}"),
-    "joint_dampings": Way(
-        "default_damping_vector",
-        "value = np.concatenate([p.get_joint(j).default_damping_vector() for j in p.GetJointIndices()])",
-    ),
-    "mass_centre": Way("CalcCenterOfMassPositionInWorld", f"{Q}value = p.CalcCenterOfMassPositionInWorld(c)"),
-    "mass_centre_jacobian": Way(
-        "CalcJacobianCenterOfMassTranslationalVelocity",
-        f"{Q}{_KV}value = p.CalcJacobianCenterOfMassTranslationalVelocity(c, kV, W, W)",
-    ),
-    "mass_centre_velocity_products": Way(
-        "CalcBiasCenterOfMassTranslationalAcceleration",
-        f"{QV}{_KV}value = p.CalcBiasCenterOfMassTranslationalAcceleration(c, kV, W, W)",
-    ),
-    "centroidal_momentum": Way(
-        "CalcSpatialMomentumInWorldAboutPoint",
-        f"{QV}L = p.CalcSpatialMomentumInWorldAboutPoint(c, p.CalcCenterOfMassPositionInWorld(c))\n"
-        "value = [*L.translational(), *L.rotational()]",
-    ),
-}
+WAYS = ways_of(f"""
+== mass_matrix | CalcMassMatrix | {Q}value = p.CalcMassMatrix(c)
+== mass_matrix:CalcMassMatrixViaInverseDynamics | CalcMassMatrixViaInverseDynamics
+{Q}value = p.CalcMassMatrixViaInverseDynamics(c)
+== coriolis_forces | CalcBiasTerm | {QV}value = p.CalcBiasTerm(c)
+== gravity | CalcGravityGeneralizedForces | {Q}value = -p.CalcGravityGeneralizedForces(c)
+== inverse_dynamics | CalcInverseDynamics | {QV}{FORCES}value = p.CalcInverseDynamics(c, a, forces)
+== bias | CalcInverseDynamics | {QV}{FORCES}value = p.CalcInverseDynamics(c, 0 * v, forces)
+== forward_dynamics | EvalTimeDerivatives
+{QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)
+value = p.EvalTimeDerivatives(c).CopyToVector()[len(q):]
+== kinetic_energy | CalcKineticEnergy | {QV}value = p.CalcKineticEnergy(c)
+== potential_energy | CalcPotentialEnergy | {Q}value = p.CalcPotentialEnergy(c)
+== link_poses | EvalBodyPoseInWorld
+{Q}poses = [p.EvalBodyPoseInWorld(c, b) for b in links]
+value = [[*x.translation(), *x.rotation().matrix().flat] for x in poses]
+== link_velocities | EvalBodySpatialVelocityInWorld
+{QV}twists = [p.EvalBodySpatialVelocityInWorld(c, b) for b in links]
+value = [[*t.translational(), *t.rotational()] for t in twists]
+== link_accelerations | CalcSpatialAccelerationsFromVdot
+{QV}every = p.CalcSpatialAccelerationsFromVdot(c, a)
+value = [[*every[b.index()].translational(), *every[b.index()].rotational()] for b in links]
+== link_velocity_products | CalcBiasSpatialAcceleration
+{QV}{_FRAMES}products = [p.CalcBiasSpatialAcceleration(c, kV, f, [0, 0, 0], W, W) for f in frames]
+value = [[*x.translational(), *x.rotational()] for x in products]
+== link_jacobians | CalcJacobianSpatialVelocity | {Q}{_FRAMES}{_JACOBIANS.format(about="W")}
+== jacobian_local | CalcJacobianSpatialVelocity | {Q}{_FRAMES}{_JACOBIANS.format(about="f")}
+== joint_dampings | default_damping_vector
+value = np.concatenate([p.get_joint(j).default_damping_vector() for j in p.GetJointIndices()])
+== mass_centre | CalcCenterOfMassPositionInWorld | {Q}value = p.CalcCenterOfMassPositionInWorld(c)
+== mass_centre_jacobian | CalcJacobianCenterOfMassTranslationalVelocity
+{Q}{_KV}value = p.CalcJacobianCenterOfMassTranslationalVelocity(c, kV, W, W)
+== mass_centre_velocity_products | CalcBiasCenterOfMassTranslationalAcceleration
+{QV}{_KV}value = p.CalcBiasCenterOfMassTranslationalAcceleration(c, kV, W, W)
+== centroidal_momentum | CalcSpatialMomentumInWorldAboutPoint
+{QV}L = p.CalcSpatialMomentumInWorldAboutPoint(c, p.CalcCenterOfMassPositionInWorld(c))
+value = [*L.translational(), *L.rotational()]
+""")
 
 _OF_COPIES = ("mass_matrix", "bias", "potential_energy", "link_poses")
 _COPIED = {

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ..interface import Convention, Tree
-from .writing.source import Source, SourcePlugin, Way
+from .writing.source import Source, SourcePlugin, ways_of
 from .writing.urdf import KINDS, UNIT_AXIS, Described, breadth_first, of_files, slots_of, through_reader
 
 _SETUP = '''import numpy as np
@@ -24,33 +24,25 @@ _FLOATING = """def args(q, *rates):
 
 _LINEAR_FIRST = "np.roll({}.reshape(-1, 6).T, 3, axis=0)"
 _TWISTS = "value = [[*t.linear, *t.angular] for t in (robot.{}(*args({}), k) for k in links)]"
-WAYS = {
-    "mass_matrix": Way("mass_matrix", "value = robot.mass_matrix(*args(q)).reshape(len(v), len(v)).T"),
-    "gravity": Way("gravity", "value = robot.gravity(*args(q))"),
-    "coriolis_forces": Way("velocity_product_forces", "value = robot.velocity_product_forces(*args(q, v))"),
-    "inverse_dynamics": Way("inverse_dynamics", "value = robot.inverse_dynamics(*args(q, v, a))"),
-    "forward_dynamics": Way("forward_dynamics", "value = robot.forward_dynamics(*args(q, v), tau)"),
-    "link_jacobians": Way(
-        "jacobian", f"value = [{_LINEAR_FIRST.format('robot.jacobian(*args(q), k)')} for k in links]"
-    ),
-    "link_jacobian_rates": Way(
-        "jacobian_derivative",
-        f"value = [{_LINEAR_FIRST.format('robot.jacobian_derivative(*args(q, v), k)')} for k in links]",
-    ),
-    "link_poses": Way(
-        "forward_kinematics",
-        """value = []
+WAYS = ways_of(f"""
+== mass_matrix | mass_matrix | value = robot.mass_matrix(*args(q)).reshape(len(v), len(v)).T
+== gravity | gravity | value = robot.gravity(*args(q))
+== coriolis_forces | velocity_product_forces | value = robot.velocity_product_forces(*args(q, v))
+== inverse_dynamics | inverse_dynamics | value = robot.inverse_dynamics(*args(q, v, a))
+== forward_dynamics | forward_dynamics | value = robot.forward_dynamics(*args(q, v), tau)
+== link_jacobians | jacobian | value = [{_LINEAR_FIRST.format("robot.jacobian(*args(q), k)")} for k in links]
+== link_jacobian_rates | jacobian_derivative
+value = [{_LINEAR_FIRST.format("robot.jacobian_derivative(*args(q, v), k)")} for k in links]
+== link_poses | forward_kinematics
+value = []
 for k in links:
     pose = robot.forward_kinematics(*args(q), k)
     x, y, z, w = pose.rotation_xyzw
     K = np.array([[0, -z, y], [z, 0, -x], [-y, x, 0]])
-    value.append([*pose.translation, *(np.eye(3) + 2 * w * K + 2 * K @ K).flat])""",
-    ),
-    "link_velocities": Way("forward_velocity_kinematics", _TWISTS.format("forward_velocity_kinematics", "q, v")),
-    "link_accelerations": Way(
-        "forward_acceleration_kinematics", _TWISTS.format("forward_acceleration_kinematics", "q, v, a")
-    ),
-}
+    value.append([*pose.translation, *(np.eye(3) + 2 * w * K + 2 * K @ K).flat])
+== link_velocities | forward_velocity_kinematics | {_TWISTS.format("forward_velocity_kinematics", "q, v")}
+== link_accelerations | forward_acceleration_kinematics | {_TWISTS.format("forward_acceleration_kinematics", "q, v, a")}
+""")
 _BASE = "free xyzw, angular and linear before"
 
 

@@ -7,7 +7,7 @@ import numpy as np
 from ..interface import STEP, Array, Convention, Link, Slot, Tree, Unsupported
 from .turns.exudyn_items import QUIET
 from .writing import copies
-from .writing.source import Source, SourcePlugin, Way, series
+from .writing.source import Source, SourcePlugin, Way, series, ways_of
 
 _SETUP = """import numpy as np
 import exudyn as exu
@@ -118,20 +118,18 @@ _IN_PYTHON = {
         ("bias", "ComputeMassMatrixAndForceTerms", "q, v)", "[1]"),
         ("forward_dynamics", "ForwardDynamicsCRB", "q, v, tau)", ""),
     )
-} | {
-    "link_poses:Robot": Way(
-        "Robot.JointHT",
-        f"{_ROBOT}at = [(np.array(rbu.HT2rotationMatrix(X)), np.array(rbu.HT2translation(X))) for X in frames]\n"
-        "value = [[*(at[k][1] + at[k][0] @ p), *(at[k][0] @ np.array(T).T).flat] if k >= 0 else"
-        " [*p, *np.array(T).T.flat] for k, p, T in zip(links, places, turns)]",
-    ),
-    "link_jacobians:Robot": Way(
-        "Robot.Jacobian",
-        f"{_ROBOT}value = np.zeros((len(links), 6, n))\nfor i, (k, p) in enumerate(zip(links, places)):\n"
-        "    if k >= 0:\n        R, x = rbu.HT2rotationMatrix(frames[k]), rbu.HT2translation(frames[k])\n"
-        "        value[i] = python.Jacobian(frames, toolPosition=np.array(x) + np.array(R) @ p, linkIndex=k)",
-    ),
-}
+} | ways_of(f"""
+== link_poses:Robot | Robot.JointHT
+{_ROBOT}at = [(np.array(rbu.HT2rotationMatrix(X)), np.array(rbu.HT2translation(X))) for X in frames]
+value = [[*(at[k][1] + at[k][0] @ p), *(at[k][0] @ np.array(T).T).flat] if k >= 0 else [*p, *np.array(T).T.flat] for \
+k, p, T in zip(links, places, turns)]
+== link_jacobians:Robot | Robot.Jacobian
+{_ROBOT}value = np.zeros((len(links), 6, n))
+for i, (k, p) in enumerate(zip(links, places)):
+    if k >= 0:
+        R, x = rbu.HT2rotationMatrix(frames[k]), rbu.HT2translation(frames[k])
+        value[i] = python.Jacobian(frames, toolPosition=np.array(x) + np.array(R) @ p, linkIndex=k)
+""")
 WAYS |= _IN_PYTHON
 _KEPT = (
     "state(q, v)\n",

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..interface import Convention, Tree
-from .writing.source import Source, SourcePlugin, Way
+from .writing.source import Source, SourcePlugin, ways_of
 from .writing.urdf import KINDS, UNIT_AXIS, Described, of_files, slots_of, through_reader
 
 _SETUP = '''import os
@@ -37,23 +37,21 @@ _STANDING = (
     '<inertia ixx="1" ixy="0" ixz="0" iyy="1" iyz="0" izz="1"/></inertial></link>'
 )
 
-WAYS = {
-    "mass_matrix": Way("mass_matrix", "value = robot.mass_matrix(q)"),
-    "mass_matrix:crba": Way("crba", "value = robot.crba(q)"),
-    "mass_matrix_inverse": Way("mass_matrix_inverse", "value = robot.mass_matrix_inverse(robot.mass_matrix(q))"),
-    "bias": Way("nonlinear_bias", "value = robot.nonlinear_bias(q, v)"),
-    "gravity": Way("gravity_vector", "value = robot.gravity_vector(q)"),
-    "coriolis_forces": Way("centrifugal_coriolis_vector", "value = robot.centrifugal_coriolis_vector(q, v)"),
-    "inverse_dynamics": Way("rnea", "value = robot.rnea(q, v, a, np.array([0, 0, 9.81, 0, 0, 0]), None)"),
-    "forward_dynamics": Way("forward_dynamics", "value = robot.forward_dynamics(q, v, tau, None)"),
-    "mass_matrix_dq": Way("jacfwd of mass_matrix", "value = jax.jacfwd(robot.mass_matrix)(q) @ rates(q)"),
-    "inverse_dynamics_dq": Way(
-        "jacfwd of rnea",
-        "value = jax.jacfwd(lambda x: robot.rnea(x, v, a, np.array([0, 0, 9.81, 0, 0, 0]), None))(q) @ rates(q)",
-    ),
-    "mass_centre": Way("center_of_mass", "value = robot.center_of_mass(q)"),
-    "mass_centre_jacobian": Way("center_of_mass_jacobian", "value = robot.center_of_mass_jacobian(q)"),
-}
+WAYS = ways_of("""
+== mass_matrix | mass_matrix | value = robot.mass_matrix(q)
+== mass_matrix:crba | crba | value = robot.crba(q)
+== mass_matrix_inverse | mass_matrix_inverse | value = robot.mass_matrix_inverse(robot.mass_matrix(q))
+== bias | nonlinear_bias | value = robot.nonlinear_bias(q, v)
+== gravity | gravity_vector | value = robot.gravity_vector(q)
+== coriolis_forces | centrifugal_coriolis_vector | value = robot.centrifugal_coriolis_vector(q, v)
+== inverse_dynamics | rnea | value = robot.rnea(q, v, a, np.array([0, 0, 9.81, 0, 0, 0]), None)
+== forward_dynamics | forward_dynamics | value = robot.forward_dynamics(q, v, tau, None)
+== mass_matrix_dq | jacfwd of mass_matrix | value = jax.jacfwd(robot.mass_matrix)(q) @ rates(q)
+== inverse_dynamics_dq | jacfwd of rnea
+value = jax.jacfwd(lambda x: robot.rnea(x, v, a, np.array([0, 0, 9.81, 0, 0, 0]), None))(q) @ rates(q)
+== mass_centre | center_of_mass | value = robot.center_of_mass(q)
+== mass_centre_jacobian | center_of_mass_jacobian | value = robot.center_of_mass_jacobian(q)
+""")
 
 
 def read(tree: Tree, described: Described) -> Source:

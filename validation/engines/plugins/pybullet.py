@@ -12,7 +12,7 @@ from . import turns
 from .turns import pybullet as turning
 from .writing import copies
 from .writing.numbering import is_depth_first
-from .writing.source import Source, SourcePlugin, Way
+from .writing.source import Source, SourcePlugin, Way, ways_of
 from .writing.urdf import KINDS, UNIT_AXIS, describe, has_bare_link, slots_of
 
 # One client serves all models; its gravity stays.
@@ -51,40 +51,31 @@ _KEPT = (
     "kept = p.saveState()\nfor k in moving: p.resetJointState(robot, k, 0.0, 0.0)\np.restoreState(kept)\n"
     "p.removeState(kept)\n",
 )
-WAYS = {
-    "mass_matrix": Way("calculateMassMatrix", "value = p.calculateMassMatrix(robot, q.tolist())"),
-    "inverse_dynamics": Way(
-        "calculateInverseDynamics",
-        "gravity\nvalue = p.calculateInverseDynamics(robot, q.tolist(), v.tolist(), a.tolist())",
-    ),
-    "bias": Way(
-        "calculateInverseDynamics",
-        "gravity\nvalue = p.calculateInverseDynamics(robot, q.tolist(), v.tolist(), [0.0] * len(v))",
-    ),
-    "gravity": Way(
-        "calculateInverseDynamics",
-        "gravity\nvalue = p.calculateInverseDynamics(robot, q.tolist(), *[[0.0] * len(v)] * 2)",
-    ),
-    "joint_speed_limits": Way("getJointInfo", "joints\nvalue = [p.getJointInfo(robot, k)[11] for k in moving]"),
-    "joint_force_limits": Way("getJointInfo", "joints\nvalue = [p.getJointInfo(robot, k)[10] for k in moving]"),
-    "joint_limits": Way("getJointInfo", "joints\nvalue = [p.getJointInfo(robot, k)[8:10] for k in moving]"),
-    "link_poses": Way(
-        "getLinkState",
-        f"{_STATES.format(v='0 * q')}value = [[*s[4], *p.getMatrixFromQuaternion(s[5])] for s in states]",
-    ),
-    "link_velocities": Way(
-        "getLinkState",
-        f"{_STATES.format(v='v')}"
-        "def arm(s): return -np.reshape(p.getMatrixFromQuaternion(s[5]), (3, 3)) @ s[2]\n"
-        "value = [[*(np.array(s[6]) + np.cross(s[7], arm(s))), *s[7]] for s in states]",
-    ),
-    # Points are stated from the link's origin, along the principal axes of its inertia.
-    "link_jacobians": Way(
-        "calculateJacobian",
-        "joints\nzero = [0.0] * len(q)\n"
-        "value = [np.concatenate(p.calculateJacobian(robot, k, [0, 0, 0], q.tolist(), zero, zero)) for k in links]",
-    ),
-}
+WAYS = ways_of(f"""
+== mass_matrix | calculateMassMatrix | value = p.calculateMassMatrix(robot, q.tolist())
+== inverse_dynamics | calculateInverseDynamics
+gravity
+value = p.calculateInverseDynamics(robot, q.tolist(), v.tolist(), a.tolist())
+== bias | calculateInverseDynamics
+gravity
+value = p.calculateInverseDynamics(robot, q.tolist(), v.tolist(), [0.0] * len(v))
+== gravity | calculateInverseDynamics
+gravity
+value = p.calculateInverseDynamics(robot, q.tolist(), *[[0.0] * len(v)] * 2)
+== joint_speed_limits | getJointInfo | joints\nvalue = [p.getJointInfo(robot, k)[11] for k in moving]
+== joint_force_limits | getJointInfo | joints\nvalue = [p.getJointInfo(robot, k)[10] for k in moving]
+== joint_limits | getJointInfo | joints\nvalue = [p.getJointInfo(robot, k)[8:10] for k in moving]
+== link_poses | getLinkState
+{_STATES.format(v="0 * q")}value = [[*s[4], *p.getMatrixFromQuaternion(s[5])] for s in states]
+== link_velocities | getLinkState
+{_STATES.format(v="v")}def arm(s): return -np.reshape(p.getMatrixFromQuaternion(s[5]), (3, 3)) @ s[2]
+value = [[*(np.array(s[6]) + np.cross(s[7], arm(s))), *s[7]] for s in states]
+== # Points are stated from the link's origin, along the principal axes of its inertia.
+== link_jacobians | calculateJacobian
+joints
+zero = [0.0] * len(q)
+value = [np.concatenate(p.calculateJacobian(robot, k, [0, 0, 0], q.tolist(), zero, zero)) for k in links]
+""")
 
 # A joint has a motor that holds it still unless its greatest force is zero, and a greatest speed; a link has a damper.
 _DRIVEN = """gravity
@@ -168,43 +159,43 @@ zero, value = [0.0] * len(q), []
 for k in links:
     own = np.reshape(p.getMatrixFromQuaternion(p.getDynamicsInfo(robot, k)[4]), (3, 3))
     value.append(p.calculateJacobian(robot, k, list(own.T @ {list(POINT)}), q.tolist(), zero, zero)[0])"""
-WAYS |= {
-    "total_mass": Way(
-        "getDynamicsInfo", "value = [sum(p.getDynamicsInfo(robot, k)[0] for k in range(-1, p.getNumJoints(robot)))]"
-    ),
-    "link_poses:getLinkStates": Way(
-        "getLinkStates",
-        f"{_STATES.format(v='0 * q')}states = p.getLinkStates(robot, links, computeForwardKinematics=1)\n"
-        "value = [[*s[4], *p.getMatrixFromQuaternion(s[5])] for s in states]",
-    ),
-    "link_poses:basePosition": Way(
-        "loadURDF: basePosition, baseOrientation",
-        f"{_STATES.format(v='0 * q')}base = p.invertTransform([0.5, -0.25, 1.0], [0.1, -0.7, 0.5, 0.5])\n"
-        "at = [p.multiplyTransforms(*base, *s[4:6]) for s in states]\n"
-        "value = [[*x, *p.getMatrixFromQuaternion(turn)] for x, turn in at]",
-        0.0,
-        _BASED,
-    ),
-    "mass_matrix:URDF_MERGE_FIXED_LINKS": WAYS["mass_matrix"]._replace(
-        native="URDF_MERGE_FIXED_LINKS, calculateMassMatrix", built=_MERGED
-    ),
-    "bias:URDF_MERGE_FIXED_LINKS": WAYS["bias"]._replace(
-        native="URDF_MERGE_FIXED_LINKS, calculateInverseDynamics", built=_MERGED
-    ),
-    # Shapes are stated in the frame of the link's inertia.
-    "shape_poses": Way(
-        "getCollisionShapeData",
-        f"{_STATES.format(v='0 * q')}value = []\nfor k, s in zip(links, states):\n"
-        "    for shape in p.getCollisionShapeData(robot, k):\n"
-        "        x, turn = p.multiplyTransforms(s[0], s[1], *shape[5:7])\n"
-        "        value.append([*x, *p.getMatrixFromQuaternion(turn)])",
-    ),
-    "point_jacobians": Way("calculateJacobian", _POINTS),
-    "pushed_accelerations": Way("applyExternalForce, applyExternalTorque, LINK_FRAME", _CHANGE.format(_IN_LINK)),
-    "pushed_accelerations:WORLD_FRAME": Way(
-        "applyExternalForce, applyExternalTorque, WORLD_FRAME", _CHANGE.format(_IN_WORLD)
-    ),
-}
+WAYS |= (
+    ways_of(f"""
+== total_mass | getDynamicsInfo
+value = [sum(p.getDynamicsInfo(robot, k)[0] for k in range(-1, p.getNumJoints(robot)))]
+== link_poses:getLinkStates | getLinkStates
+{_STATES.format(v="0 * q")}states = p.getLinkStates(robot, links, computeForwardKinematics=1)
+value = [[*s[4], *p.getMatrixFromQuaternion(s[5])] for s in states]
+""")
+    | {
+        "link_poses:basePosition": Way(
+            "loadURDF: basePosition, baseOrientation",
+            f"{_STATES.format(v='0 * q')}base = p.invertTransform([0.5, -0.25, 1.0], [0.1, -0.7, 0.5, 0.5])\n"
+            "at = [p.multiplyTransforms(*base, *s[4:6]) for s in states]\n"
+            "value = [[*x, *p.getMatrixFromQuaternion(turn)] for x, turn in at]",
+            0.0,
+            _BASED,
+        ),
+        "mass_matrix:URDF_MERGE_FIXED_LINKS": WAYS["mass_matrix"]._replace(
+            native="URDF_MERGE_FIXED_LINKS, calculateMassMatrix", built=_MERGED
+        ),
+        "bias:URDF_MERGE_FIXED_LINKS": WAYS["bias"]._replace(
+            native="URDF_MERGE_FIXED_LINKS, calculateInverseDynamics", built=_MERGED
+        ),
+    }
+    | ways_of(f"""
+== # Shapes are stated in the frame of the link's inertia.
+== shape_poses | getCollisionShapeData
+{_STATES.format(v="0 * q")}value = []
+for k, s in zip(links, states):
+    for shape in p.getCollisionShapeData(robot, k):
+        x, turn = p.multiplyTransforms(s[0], s[1], *shape[5:7])
+        value.append([*x, *p.getMatrixFromQuaternion(turn)])
+== point_jacobians | calculateJacobian | {_POINTS}
+== pushed_accelerations | applyExternalForce, applyExternalTorque, LINK_FRAME | {_CHANGE.format(_IN_LINK)}
+== pushed_accelerations:WORLD_FRAME | applyExternalForce, applyExternalTorque, WORLD_FRAME | {_CHANGE.format(_IN_WORLD)}
+""")
+)
 # What is asked of free bases.
 _OF_FREE = ("mass_matrix", "inverse_dynamics", "bias", "gravity", "link_poses", "link_velocities")
 

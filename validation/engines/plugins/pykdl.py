@@ -10,7 +10,7 @@ from pathlib import Path
 import numpy as np
 
 from ..interface import Convention, Rows, Slot, Tree, Unsupported, Vector
-from .writing.source import Source, SourcePlugin, Way
+from .writing.source import Source, SourcePlugin, ways_of
 
 # Where Debian's package for the system's Python puts it.
 SYSTEM = Path("/usr/lib/python3/dist-packages")
@@ -46,49 +46,37 @@ def _newton_euler(rates: str) -> str:
     )
 
 
-WAYS = {
-    "mass_matrix": Way(
-        "ChainDynParam.JntToMass",
-        "M = K.JntSpaceInertiaMatrix(n)\nassert K.ChainDynParam(chain, g).JntToMass(jnt(q), M) == 0\nvalue = matrix(M)",
-    ),
-    "gravity": Way("ChainDynParam.JntToGravity", _forces("JntToGravity", "jnt(q)")),
-    "coriolis_forces": Way("ChainDynParam.JntToCoriolis", _forces("JntToCoriolis", "jnt(q), jnt(v)")),
-    "inverse_dynamics": Way("ChainIdSolver_RNE.CartToJnt", _newton_euler("jnt(a)")),
-    "bias": Way("ChainIdSolver_RNE.CartToJnt", _newton_euler("jnt(0 * v)")),
-    "link_poses": Way(
-        "ChainFkSolverPos_recursive.JntToCart",
-        """value = []
+WAYS = ways_of(f"""
+== mass_matrix | ChainDynParam.JntToMass
+M = K.JntSpaceInertiaMatrix(n)
+assert K.ChainDynParam(chain, g).JntToMass(jnt(q), M) == 0
+value = matrix(M)
+== gravity | ChainDynParam.JntToGravity | {_forces("JntToGravity", "jnt(q)")}
+== coriolis_forces | ChainDynParam.JntToCoriolis | {_forces("JntToCoriolis", "jnt(q), jnt(v)")}
+== inverse_dynamics | ChainIdSolver_RNE.CartToJnt | {_newton_euler("jnt(a)")}
+== bias | ChainIdSolver_RNE.CartToJnt | {_newton_euler("jnt(0 * v)")}
+== link_poses | ChainFkSolverPos_recursive.JntToCart
+value = []
 for s in tips:
     X = K.Frame()
     assert K.ChainFkSolverPos_recursive(chain).JntToCart(jnt(q), X, s) >= 0
-    value.append([*X.p, *(X.M[i, j] for i in range(3) for j in range(3))])""",
-    ),
-    "link_jacobians": Way(
-        "ChainJntToJacSolver.JntToJac",
-        """value = []
+    value.append([*X.p, *(X.M[i, j] for i in range(3) for j in range(3))])
+== link_jacobians | ChainJntToJacSolver.JntToJac
+value = []
 for s in tips:
     J = K.Jacobian(n)
     assert K.ChainJntToJacSolver(chain).JntToJac(jnt(q), J, s) == 0
-    value.append(matrix(J))""",
-    ),
-    "link_velocities": Way(
-        "ChainFkSolverVel_recursive.JntToCart",
-        """value = []
+    value.append(matrix(J))
+== link_velocities | ChainFkSolverVel_recursive.JntToCart
+value = []
 for s in tips:
     X = K.FrameVel()
     assert K.ChainFkSolverVel_recursive(chain).JntToCart(K.JntArrayVel(jnt(q), jnt(v)), X, s) >= 0
-    value.append([*X.p.v, *X.M.w])""",
-    ),
-    "link_jacobian_rates": Way(
-        "ChainJntToJacDotSolver, HYBRID", "value = rates(q, v, K.ChainJntToJacDotSolver.HYBRID)"
-    ),
-    "jacobian_rate_local": Way(
-        "ChainJntToJacDotSolver, BODYFIXED", "value = rates(q, v, K.ChainJntToJacDotSolver.BODYFIXED)"
-    ),
-    "jacobian_rate_world": Way(
-        "ChainJntToJacDotSolver, INERTIAL", "value = rates(q, v, K.ChainJntToJacDotSolver.INERTIAL)"
-    ),
-}
+    value.append([*X.p.v, *X.M.w])
+== link_jacobian_rates | ChainJntToJacDotSolver, HYBRID | value = rates(q, v, K.ChainJntToJacDotSolver.HYBRID)
+== jacobian_rate_local | ChainJntToJacDotSolver, BODYFIXED | value = rates(q, v, K.ChainJntToJacDotSolver.BODYFIXED)
+== jacobian_rate_world | ChainJntToJacDotSolver, INERTIAL | value = rates(q, v, K.ChainJntToJacDotSolver.INERTIAL)
+""")
 
 
 def _vector(p: Vector) -> str:

@@ -12,7 +12,7 @@ from . import turns
 from .newton import quaternion
 from .turns import sapien as turning
 from .writing.numbering import numbered
-from .writing.source import Source, SourcePlugin, Way, series
+from .writing.source import Source, SourcePlugin, Way, series, ways_of
 from .writing.urdf import UNIT_AXIS, Described, describe, of_files, slots_of
 
 # Its import warns of a system without Vulkan, which nothing here draws with.
@@ -58,70 +58,57 @@ scene.step()
 value = [*parts(robot.get_qpos()), *parts(robot.get_qvel())]"""
 _SHORT = 2.0**-60
 
-WAYS = {
-    "bias": Way("compute_passive_force", _FORCE.format(v="v", gravity=True, coriolis=True)),
-    "gravity": Way("compute_passive_force", _FORCE.format(v="0 * v", gravity=True, coriolis=False)),
-    "coriolis_forces": Way("compute_passive_force", _FORCE.format(v="v", gravity=False, coriolis=True)),
-    "link_poses": Way(
-        "entity_pose",
-        f"{_MATRIX}put(q, 0 * v)\n" + _POSES.format(of="matrix(link.entity_pose)", each="link in links"),
-    ),
-    # Of the mass centres.
-    "link_velocities": Way(
-        "linear_velocity, angular_velocity",
-        f"""{_MATRIX}put(q, v)
+WAYS = (
+    ways_of(f"""
+== bias | compute_passive_force | {_FORCE.format(v="v", gravity=True, coriolis=True)}
+== gravity | compute_passive_force | {_FORCE.format(v="0 * v", gravity=True, coriolis=False)}
+== coriolis_forces | compute_passive_force | {_FORCE.format(v="v", gravity=False, coriolis=True)}
+== link_poses | entity_pose
+{_MATRIX}put(q, 0 * v)
+{_POSES.format(of="matrix(link.entity_pose)", each="link in links")}
+== # Of the mass centres.
+== link_velocities | linear_velocity, angular_velocity
+{_MATRIX}put(q, v)
 value = []
 for link in links:
     w, arm = link.angular_velocity, matrix(link.entity_pose)[:3, :3] @ link.cmass_local_pose.p
-    value.append([*(link.linear_velocity - np.cross(w, arm)), *w])""",
-    ),
-    "step_semi_implicit": Way("Scene.step", _STEP),
-    "step_stiffness_implicit": Way("Scene.step, set_drive_properties", _STEP),
-    # In the joint's frame on the child, with speeds that are those at the end of the step.
-    "joint_wrenches_driven": Way(
-        "link_incoming_joint_forces",
-        f"""{_MATRIX}{_STEP.replace(repr(STEP), repr(_SHORT))}
+    value.append([*(link.linear_velocity - np.cross(w, arm)), *w])
+== step_semi_implicit | Scene.step | {_STEP}
+== step_stiffness_implicit | Scene.step, set_drive_properties | {_STEP}
+== # In the joint's frame on the child, with speeds that are those at the end of the step.
+== joint_wrenches_driven ~ 0.001 | link_incoming_joint_forces
+{_MATRIX}{_STEP.replace(repr(STEP), repr(_SHORT))}
 held, value = robot.link_incoming_joint_forces, []
 for link in links:
     X, wrench = matrix(link.joint.pose_in_child), held[link.index]
     force, moment = X[:3, :3] @ wrench[:3], X[:3, :3] @ wrench[3:]
-    value.append([*force, *(moment + np.cross(X[:3, 3], force))])""",
-        1e-3,
-    ),
-    # Friction as an argument of the joint, 0 unless stated.
-    "step_semi_implicit:set_joint_properties": Way("set_joint_properties, Scene.step", _STEP, built=_AS_MADE),
-    "joint_limits": Way("limits", "value = parts([joint.limits[0] for joint in robot.active_joints])"),
-    "joint_dampings": Way("damping", "value = parts([joint.damping for joint in robot.active_joints])"),
-    "mass_matrix": Way(
-        "PinocchioModel.compute_generalized_mass_matrix",
-        "value = model.compute_generalized_mass_matrix(q[place])[np.ix_(own, own)]",
-    ),
-    "inverse_dynamics": Way(
-        "PinocchioModel.compute_inverse_dynamics",
-        "value = parts(model.compute_inverse_dynamics(q[place], v[place], a[place]))",
-    ),
-    "forward_dynamics": Way(
-        "PinocchioModel.compute_forward_dynamics",
-        "value = parts(model.compute_forward_dynamics(q[place], v[place], tau[place]))",
-    ),
-    "coriolis_symmetry": Way(
-        "PinocchioModel.compute_coriolis_matrix",
-        "C = model.compute_coriolis_matrix(q[place], v[place])[np.ix_(own, own)]\nvalue = C + C.T",
-    ),
-    "coriolis_forces:PinocchioModel": Way(
-        "PinocchioModel.compute_coriolis_matrix",
-        "value = parts(model.compute_coriolis_matrix(q[place], v[place]) @ v[place])",
-    ),
-    "link_poses:PinocchioModel": Way(
-        "PinocchioModel.get_link_pose",
-        f"{_MATRIX}model.compute_forward_kinematics(q[place])\n"
-        + _POSES.format(of="matrix(model.get_link_pose(link.index))", each="link in links"),
-    ),
-    "jacobian_local": Way(
-        "PinocchioModel.compute_single_link_local_jacobian",
-        "value = [model.compute_single_link_local_jacobian(q[place], link.index)[:, own] for link in links]",
-    ),
-}
+    value.append([*force, *(moment + np.cross(X[:3, 3], force))])
+""")
+    | {
+        # Friction as an argument of the joint, 0 unless stated.
+        "step_semi_implicit:set_joint_properties": Way("set_joint_properties, Scene.step", _STEP, built=_AS_MADE),
+    }
+    | ways_of(f"""
+== joint_limits | limits | value = parts([joint.limits[0] for joint in robot.active_joints])
+== joint_dampings | damping | value = parts([joint.damping for joint in robot.active_joints])
+== mass_matrix | PinocchioModel.compute_generalized_mass_matrix
+value = model.compute_generalized_mass_matrix(q[place])[np.ix_(own, own)]
+== inverse_dynamics | PinocchioModel.compute_inverse_dynamics
+value = parts(model.compute_inverse_dynamics(q[place], v[place], a[place]))
+== forward_dynamics | PinocchioModel.compute_forward_dynamics
+value = parts(model.compute_forward_dynamics(q[place], v[place], tau[place]))
+== coriolis_symmetry | PinocchioModel.compute_coriolis_matrix
+C = model.compute_coriolis_matrix(q[place], v[place])[np.ix_(own, own)]
+value = C + C.T
+== coriolis_forces:PinocchioModel | PinocchioModel.compute_coriolis_matrix
+value = parts(model.compute_coriolis_matrix(q[place], v[place]) @ v[place])
+== link_poses:PinocchioModel | PinocchioModel.get_link_pose
+{_MATRIX}model.compute_forward_kinematics(q[place])
+{_POSES.format(of="matrix(model.get_link_pose(link.index))", each="link in links")}
+== jacobian_local | PinocchioModel.compute_single_link_local_jacobian
+value = [model.compute_single_link_local_jacobian(q[place], link.index)[:, own] for link in links]
+""")
+)
 
 
 def _pose(R: Array, p: Array) -> str:

@@ -8,7 +8,7 @@ import symofros
 
 from ..interface import Convention, Joint, Link, Slot, Tree, Unsupported
 from .writing.numbering import numbered
-from .writing.source import Source, SourcePlugin, Way, series
+from .writing.source import Source, SourcePlugin, series, ways_of
 
 _SETUP = """import numpy as np
 import symofros as sf
@@ -23,44 +23,39 @@ _EACH = "value = np.array([{} for name in links])"
 _RATES = "m.inverse_dynamics_derivatives(q, v, a)"
 _TORQUES = "m.forward_dynamics_derivatives(q, v, tau)"
 _BOUNDS = "bounds = [b.joint.limits for b in system.bodies if b.joint and b.joint.limits]\n"
-WAYS = {
-    "sizes": Way("nq, nv", "value = [m.nq, m.nv]"),
-    "mass_matrix": Way("mass_matrix", "value = m.mass_matrix(q)"),
-    "bias": Way("bias", "value = m.bias(q, v)"),
-    "gravity": Way("gravity_force", "value = m.gravity_force(q)"),
-    "coriolis_forces": Way("coriolis_matrix", "value = m.coriolis_matrix(q, v) @ v"),
-    "coriolis_symmetry": Way("coriolis_matrix", "C = m.coriolis_matrix(q, v)\nvalue = C + C.T"),
-    "inverse_dynamics": Way("inverse_dynamics", "value = m.inverse_dynamics(q, v, a)"),
-    "joint_wrenches": Way("joint_wrenches", "value = m.joint_wrenches(q, v, a, tau, [])[own]"),
-    "joint_wrenches_driven": Way(
-        "forward_dynamics, joint_wrenches",
-        "value = m.joint_wrenches(q, v, m.forward_dynamics(q, v, tau), tau, [])[own]",
-    ),
-    "forward_dynamics": Way("forward_dynamics", "value = m.forward_dynamics(q, v, tau)"),
-    "kinetic_energy": Way("kinetic_energy", "value = m.kinetic_energy(q, v)"),
-    "potential_energy": Way("potential_energy", "value = m.potential_energy(q)"),
-    "link_poses": Way("frame_pose", "value = [np.append(*m.frame_pose(name, q)) for name in links]"),
-    "link_velocities": Way("frame_velocity", _EACH.format("m.frame_velocity(name, q, v)")),
-    "link_accelerations": Way("frame_acceleration", _EACH.format("m.frame_acceleration(name, q, v, a)")),
-    "link_jacobians": Way("frame_jacobian", _EACH.format("m.frame_jacobian(name, q)")),
-    "link_jacobian_rates": Way("frame_jacobian_rate", _EACH.format("m.frame_jacobian_rate(name, q, v)")),
-    "mass_centre": Way("center_of_mass", "value = m.center_of_mass(q)"),
-    "centroidal_matrix": Way("centroidal_momentum_matrix", "value = m.centroidal_momentum_matrix(q)"),
-    "centroidal_momentum": Way("centroidal_momentum", "value = m.centroidal_momentum(q, v)"),
-    "centroidal_momentum_rate": Way("centroidal_momentum_rate", "value = m.centroidal_momentum_rate(q, v, a)"),
-    "inverse_dynamics_dq": Way("inverse_dynamics_derivatives", f"value = {_RATES}[0]"),
-    "inverse_dynamics_dv": Way("inverse_dynamics_derivatives", f"value = {_RATES}[1]"),
-    "forward_dynamics_dq": Way("forward_dynamics_derivatives", f"value = {_TORQUES}[0]"),
-    "forward_dynamics_dv": Way("forward_dynamics_derivatives", f"value = {_TORQUES}[1]"),
-    "joint_speed_limits": Way("Joint.limits", f"{_BOUNDS}value = [one.velocity for one in bounds]"),
-    "joint_force_limits": Way("Joint.limits", f"{_BOUNDS}value = [one.effort for one in bounds]"),
-    "joint_limits": Way(
-        "Joint.limits",
-        f"{_BOUNDS}value = [[one.lower, one.upper] for one in bounds]",
-    ),
-    "integrate": Way("integrate", "value = m.integrate(q, v2)"),
-    "difference": Way("difference", "value = m.difference(q, m.integrate(q, v2))"),
-}
+WAYS = ways_of(f"""
+== sizes | nq, nv | value = [m.nq, m.nv]
+== mass_matrix | mass_matrix | value = m.mass_matrix(q)
+== bias | bias | value = m.bias(q, v)
+== gravity | gravity_force | value = m.gravity_force(q)
+== coriolis_forces | coriolis_matrix | value = m.coriolis_matrix(q, v) @ v
+== coriolis_symmetry | coriolis_matrix | C = m.coriolis_matrix(q, v)\nvalue = C + C.T
+== inverse_dynamics | inverse_dynamics | value = m.inverse_dynamics(q, v, a)
+== joint_wrenches | joint_wrenches | value = m.joint_wrenches(q, v, a, tau, [])[own]
+== joint_wrenches_driven | forward_dynamics, joint_wrenches
+value = m.joint_wrenches(q, v, m.forward_dynamics(q, v, tau), tau, [])[own]
+== forward_dynamics | forward_dynamics | value = m.forward_dynamics(q, v, tau)
+== kinetic_energy | kinetic_energy | value = m.kinetic_energy(q, v)
+== potential_energy | potential_energy | value = m.potential_energy(q)
+== link_poses | frame_pose | value = [np.append(*m.frame_pose(name, q)) for name in links]
+== link_velocities | frame_velocity | {_EACH.format("m.frame_velocity(name, q, v)")}
+== link_accelerations | frame_acceleration | {_EACH.format("m.frame_acceleration(name, q, v, a)")}
+== link_jacobians | frame_jacobian | {_EACH.format("m.frame_jacobian(name, q)")}
+== link_jacobian_rates | frame_jacobian_rate | {_EACH.format("m.frame_jacobian_rate(name, q, v)")}
+== mass_centre | center_of_mass | value = m.center_of_mass(q)
+== centroidal_matrix | centroidal_momentum_matrix | value = m.centroidal_momentum_matrix(q)
+== centroidal_momentum | centroidal_momentum | value = m.centroidal_momentum(q, v)
+== centroidal_momentum_rate | centroidal_momentum_rate | value = m.centroidal_momentum_rate(q, v, a)
+== inverse_dynamics_dq | inverse_dynamics_derivatives | value = {_RATES}[0]
+== inverse_dynamics_dv | inverse_dynamics_derivatives | value = {_RATES}[1]
+== forward_dynamics_dq | forward_dynamics_derivatives | value = {_TORQUES}[0]
+== forward_dynamics_dv | forward_dynamics_derivatives | value = {_TORQUES}[1]
+== joint_speed_limits | Joint.limits | {_BOUNDS}value = [one.velocity for one in bounds]
+== joint_force_limits | Joint.limits | {_BOUNDS}value = [one.effort for one in bounds]
+== joint_limits | Joint.limits | {_BOUNDS}value = [[one.lower, one.upper] for one in bounds]
+== integrate | integrate | value = m.integrate(q, v2)
+== difference | difference | value = m.difference(q, m.integrate(q, v2))
+""")
 _ASKED = (
     "mass_matrix bias gravity_force coriolis_matrix inverse_dynamics joint_wrenches forward_dynamics kinetic_energy"
     " potential_energy frame_pose frame_velocity frame_acceleration frame_jacobian frame_jacobian_rate center_of_mass"

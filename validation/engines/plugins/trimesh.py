@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from ..interface import Array, Convention, Link, Tree, Unsupported
-from .writing.source import Source, SourcePlugin, Way
+from .writing.source import Source, SourcePlugin, ways_of
 
 _SOLIDS = {
     "box by its sizes": "trimesh.creation.box(extents={size})",
@@ -27,25 +27,23 @@ _TRIANGLES = (
     "    squares = [(0, 2, 3, 1), (4, 5, 7, 6), (0, 1, 5, 4), (2, 6, 7, 3), (0, 4, 6, 2), (1, 3, 7, 5)]",
     "    return corners, [t for a, b, c, d in squares for t in ((a, b, c), (a, c, d))]",
 )
-WAYS = {
-    "solid_inertia": Way(
-        "mass_properties",
-        "I = solid.moment_inertia\nvalue = [solid.mass, *solid.center_mass, *np.diag(I), I[0, 1], I[0, 2], I[1, 2]]",
-    ),
-    "solid_inertia:volume": Way(
-        "volume, moment_inertia_frame",
-        "I = solid.moment_inertia_frame(np.eye(4)).copy()\nc = solid.center_mass\nm = density * solid.volume\n"
-        "I -= m * (c @ c * np.eye(3) - np.outer(c, c))\n"
-        "value = [m, *c, *np.diag(I), I[0, 1], I[0, 2], I[1, 2]]",
-    ),
-    "solid_mass": Way("volume", "value = [density * solid.volume]"),
-    # Of a ball and a cylinder these are formulas; all else is of the triangles that stand for them.
-    "solid_inertia:primitive": Way(
-        "primitives: volume, moment_inertia",
-        "I = solid.moment_inertia\nm = density * solid.volume\n"
-        "value = [m, *solid.center_mass, *np.diag(I), I[0, 1], I[0, 2], I[1, 2]]",
-    ),
-}
+WAYS = ways_of("""
+== solid_inertia | mass_properties
+I = solid.moment_inertia
+value = [solid.mass, *solid.center_mass, *np.diag(I), I[0, 1], I[0, 2], I[1, 2]]
+== solid_inertia:volume | volume, moment_inertia_frame
+I = solid.moment_inertia_frame(np.eye(4)).copy()
+c = solid.center_mass
+m = density * solid.volume
+I -= m * (c @ c * np.eye(3) - np.outer(c, c))
+value = [m, *c, *np.diag(I), I[0, 1], I[0, 2], I[1, 2]]
+== solid_mass | volume | value = [density * solid.volume]
+== # Of a ball and a cylinder these are formulas; all else is of the triangles that stand for them.
+== solid_inertia:primitive | primitives: volume, moment_inertia
+I = solid.moment_inertia
+m = density * solid.volume
+value = [m, *solid.center_mass, *np.diag(I), I[0, 1], I[0, 2], I[1, 2]]
+""")
 
 
 def _pose(R: Array, p: Array) -> Array:

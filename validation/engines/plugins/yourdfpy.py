@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ..interface import Convention, Tree, Unsupported
 from .writing.numbering import numbered
-from .writing.source import Source, SourcePlugin, Way
+from .writing.source import Source, SourcePlugin, ways_of
 
 _OF = "value = [{} for j in moving]"
 _BODY = """value = []
@@ -13,27 +13,22 @@ for one in (robot.link_map[name].inertial for name in links):
     I = np.zeros((3, 3)) if one is None or one.inertia is None else T[:3, :3] @ one.inertia @ T[:3, :3].T
     m = one.mass if one and one.mass else 0.0
     value.append([m, *(m * T[:3, 3]), *I[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]])"""
-WAYS = {
-    "sizes": Way("num_dofs", "value = [robot.num_dofs] * 2"),
-    "link_poses": Way(
-        "get_transform",
-        "robot.update_cfg({j.name: x for j, x in zip(moving, q)})\n"
-        "value = [[*T[:3, 3], *T[:3, :3].flat] for T in (robot.get_transform(name) for name in links)]",
-    ),
-    "link_bodies": Way("link_map, inertial", _BODY),
-    "joint_limits": Way(
-        "limit.lower, upper",
-        "def bound(x): return 0.0 if x is None else x\n" + _OF.format("[bound(j.limit.lower), bound(j.limit.upper)]"),
-    ),
-    "coupled_coefficients": Way(
-        "mimic.multiplier, offset",
-        "value = [[one.offset, one.multiplier] for one in (j.mimic for j in robot.joint_map.values()) if one]",
-    ),
-    "joint_speed_limits": Way("limit.velocity", _OF.format("j.limit.velocity")),
-    "joint_force_limits": Way("limit.effort", _OF.format("j.limit.effort")),
-    "joint_dampings": Way("dynamics.damping", _OF.format("(j.dynamics and j.dynamics.damping) or 0.0")),
-    "joint_frictions": Way("dynamics.friction", _OF.format("(j.dynamics and j.dynamics.friction) or 0.0")),
-}
+WAYS = ways_of(f"""
+== sizes | num_dofs | value = [robot.num_dofs] * 2
+== link_poses | get_transform
+robot.update_cfg({{j.name: x for j, x in zip(moving, q)}})
+value = [[*T[:3, 3], *T[:3, :3].flat] for T in (robot.get_transform(name) for name in links)]
+== link_bodies | link_map, inertial | {_BODY}
+== joint_limits | limit.lower, upper
+def bound(x): return 0.0 if x is None else x
+{_OF.format("[bound(j.limit.lower), bound(j.limit.upper)]")}
+== coupled_coefficients | mimic.multiplier, offset
+value = [[one.offset, one.multiplier] for one in (j.mimic for j in robot.joint_map.values()) if one]
+== joint_speed_limits | limit.velocity | {_OF.format("j.limit.velocity")}
+== joint_force_limits | limit.effort | {_OF.format("j.limit.effort")}
+== joint_dampings | dynamics.damping | {_OF.format("(j.dynamics and j.dynamics.damping) or 0.0")}
+== joint_frictions | dynamics.friction | {_OF.format("(j.dynamics and j.dynamics.friction) or 0.0")}
+""")
 _KINDS = {("revolute", ""): "angle", ("revolute", "unbounded"): "angle", ("prismatic", ""): "length"}
 
 

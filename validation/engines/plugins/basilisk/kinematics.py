@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...truth.geometry.attitudes import ANGLES, SEQUENCES
-from ..writing.source import HALF_TURNS, Way
+from ..writing.source import HALF_TURNS, Way, ways_of
 
 # Sets of attitude parameters -> how their functions are called: to and from quaternions, to matrices.
 _SETS = {"MRP": "MRP", "gibbs": "Gibbs", "PRV": "PRV"} | {f"euler{one}": f"Euler{one}" for one in SEQUENCES}
@@ -13,17 +13,15 @@ def _through(own: str, of: str) -> dict[str, Way]:
     """Through a set of parameters: R from its own matrix, from a matrix, from a quaternion and back, R Q."""
     there, back = f"rbk.EP2{of}", f"rbk.{own}2C"
     again = f"rbk.EP2C(rbk.{own}2EP({there}(q)))"
-    return {
-        f"rotation_matrix:{own}2C": Way(f"EP2{of}, {own}2C", f"value = {back}({there}(q)).T.ravel()"),
-        f"rotation_matrix:C2{of}": Way(f"C2{of}, {own}2C", f"value = {back}(rbk.C2{of}(rbk.EP2C(q))).T.ravel()"),
-        f"rotation_matrix:{own}2EP": Way(f"EP2{of}, {own}2EP", f"value = {again}.T.ravel()"),
-        f"rotation_composed:add{of}": Way(
-            f"add{of}", f"value = {back}(rbk.add{of}({there}(q), {there}(q2))).T.ravel()"
-        ),
-        f"rotation_angle:sub{of}": Way(
-            f"sub{of}", f"C = {back}(rbk.sub{of}({there}(q2), {there}(q)))\nvalue = [np.linalg.norm(rbk.C2PRV(C))]"
-        ),
-    }
+    return ways_of(f"""
+== rotation_matrix:{own}2C | EP2{of}, {own}2C | value = {back}({there}(q)).T.ravel()
+== rotation_matrix:C2{of} | C2{of}, {own}2C | value = {back}(rbk.C2{of}(rbk.EP2C(q))).T.ravel()
+== rotation_matrix:{own}2EP | EP2{of}, {own}2EP | value = {again}.T.ravel()
+== rotation_composed:add{of} | add{of} | value = {back}(rbk.add{of}({there}(q), {there}(q2))).T.ravel()
+== rotation_angle:sub{of} | sub{of}
+C = {back}(rbk.sub{of}({there}(q2), {there}(q)))
+value = [np.linalg.norm(rbk.C2PRV(C))]
+""")
 
 
 WAYS = {
@@ -63,25 +61,19 @@ def _of_parameters(own: str, of: str) -> dict[str, Way]:
 
 for _own, _of in _SETS.items():
     WAYS |= _through(_own, _of) | _of_parameters(_own, _of)
-WAYS |= {
-    "attitude_of_mrp:MRPshadow": Way("MRPshadow", "value = rbk.MRP2C(rbk.MRPshadow(tau)).T.ravel()"),
-    "attitude_of_prv:PRV2elem": Way(
-        "PRV2elem, elem2PRV", "value = rbk.PRV2C(rbk.elem2PRV(rbk.PRV2elem(tau))).T.ravel()"
-    ),
-    "attitude_speeds_mrp:dMRP2Omega": Way(
-        "dMRP2Omega", "value = np.transpose([rbk.dMRP2Omega(tau, x) for x in np.eye(3)])"
-    ),
-    "mrp_rates_rate": Way("BdotmatMRP", "value = rbk.BdotmatMRP(tau, a) / 4"),
-    "mrp_second_rates": Way("ddMRP", "value = rbk.ddMRP(tau, a, rbk.dMRP2Omega(tau, a), v2)"),
-    "mrp_acceleration": Way("ddMRP2dOmega", "value = rbk.ddMRP2dOmega(tau, a, v2)"),
-    "mrp_switched": Way("MRPswitch", "value = rbk.MRPswitch(tau, 1.0)"),
-    "rotations_elementary": Way(
-        "euler1, euler2, euler3",
-        "value = [f(x).T.ravel() for f, x in zip((rbk.euler1, rbk.euler2, rbk.euler3), v)]",
-    ),
-    "rotations_elementary:Mi": Way("Mi", "value = [rbk.Mi(x, k).T.ravel() for k, x in enumerate(v, 1)]"),
-    "angles_wrapped": Way("Picheck", "value = [rbk.Picheck(x) for x in (*(16 * v), *v)]"),
-    "quaternion_rates": Way("dEP", "value = rbk.dEP(q, v)"),
-    "quaternion_rates:BmatEP": Way("BmatEP", "value = rbk.BmatEP(q) @ v / 2"),
-    "quaternion_rates:BinvEP": Way("BinvEP", "value = rbk.BinvEP(q).T @ v / 2"),
-}
+WAYS |= ways_of("""
+== attitude_of_mrp:MRPshadow | MRPshadow | value = rbk.MRP2C(rbk.MRPshadow(tau)).T.ravel()
+== attitude_of_prv:PRV2elem | PRV2elem, elem2PRV | value = rbk.PRV2C(rbk.elem2PRV(rbk.PRV2elem(tau))).T.ravel()
+== attitude_speeds_mrp:dMRP2Omega | dMRP2Omega | value = np.transpose([rbk.dMRP2Omega(tau, x) for x in np.eye(3)])
+== mrp_rates_rate | BdotmatMRP | value = rbk.BdotmatMRP(tau, a) / 4
+== mrp_second_rates | ddMRP | value = rbk.ddMRP(tau, a, rbk.dMRP2Omega(tau, a), v2)
+== mrp_acceleration | ddMRP2dOmega | value = rbk.ddMRP2dOmega(tau, a, v2)
+== mrp_switched | MRPswitch | value = rbk.MRPswitch(tau, 1.0)
+== rotations_elementary | euler1, euler2, euler3
+value = [f(x).T.ravel() for f, x in zip((rbk.euler1, rbk.euler2, rbk.euler3), v)]
+== rotations_elementary:Mi | Mi | value = [rbk.Mi(x, k).T.ravel() for k, x in enumerate(v, 1)]
+== angles_wrapped | Picheck | value = [rbk.Picheck(x) for x in (*(16 * v), *v)]
+== quaternion_rates | dEP | value = rbk.dEP(q, v)
+== quaternion_rates:BmatEP | BmatEP | value = rbk.BmatEP(q) @ v / 2
+== quaternion_rates:BinvEP | BinvEP | value = rbk.BinvEP(q).T @ v / 2
+""")

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...truth.spaceflight.orbits import HARMONICS, MU, ZONAL
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 
 _IMPORT = "from Basilisk.utilities import orbitalMotion as om\n"
 # Elements as `truth.spaceflight.orbits` has them; `sign` is -1 and the eccentricity's power too for hyperbolas.
@@ -37,46 +37,34 @@ def _coefficients() -> str:
     return f"model.maxDeg, model.radEquator = {max(degrees)}, 1.0\nmodel.cBar, model.sBar = {cosines}, {sines}\n"
 
 
-WAYS = {
-    "orbit_anomalies": Way(
-        "E2f, E2M, f2E, M2E",
-        f"{_IMPORT}{ELEMENTS}x = tau[0]\nvalue = [om.E2f(x, e), om.E2M(x, e), om.f2E(x, e), om.M2E(x, e)]",
-    ),
-    "orbit_anomalies_open": Way(
-        "H2f, H2N, f2H, N2H",
-        f"{_IMPORT}{ELEMENTS}x, e = tau[0], 1 / e\n"
-        "value = [om.H2f(x, e), om.H2N(x, e), om.f2H(x / 2, e), om.N2H(x, e)]",
-    ),
-    "orbit_frame": Way("hillFrame", f"{_IMPORT}{ELEMENTS}{STATE}value = np.ravel(om.hillFrame(r, w))"),
-    "orbit_frame_position": Way(
-        "rv2hill", f"{_IMPORT}{ELEMENTS}{STATE}value = np.ravel(om.rv2hill(r, w, r + v2, w + tau))"
-    ),
-    "orbit_frame_back": Way("hill2rv", f"{_IMPORT}{ELEMENTS}{STATE}value = np.ravel(om.hill2rv(r, w, v2, tau))"),
-    "orbit_equinoctial": Way(
-        "clElem2eqElem",
-        f"{_IMPORT}{ELEMENTS}eq = om.EquinoctialElements()\nom.clElem2eqElem(oe, eq)\n"
-        "value = [eq.a, eq.P1, eq.P2, eq.Q1, eq.Q2, np.cos(eq.l), np.sin(eq.l), np.cos(eq.L), np.sin(eq.L)]",
-    ),
-    "gravity_point_mass": Way(
-        "PointMassGravityModel, computeField", _FIELD.format("pointMassGravityModel", "PointMassGravityModel", MU, "")
-    ),
-    "gravity_harmonics": Way(
-        "SphericalHarmonicsGravityModel, computeField",
-        _FIELD.format("sphericalHarmonicsGravityModel", "SphericalHarmonicsGravityModel", MU, _coefficients()),
-    ),
-}
+WAYS = ways_of(f"""
+== orbit_anomalies | E2f, E2M, f2E, M2E
+{_IMPORT}{ELEMENTS}x = tau[0]
+value = [om.E2f(x, e), om.E2M(x, e), om.f2E(x, e), om.M2E(x, e)]
+== orbit_anomalies_open | H2f, H2N, f2H, N2H
+{_IMPORT}{ELEMENTS}x, e = tau[0], 1 / e
+value = [om.H2f(x, e), om.H2N(x, e), om.f2H(x / 2, e), om.N2H(x, e)]
+== orbit_frame | hillFrame | {_IMPORT}{ELEMENTS}{STATE}value = np.ravel(om.hillFrame(r, w))
+== orbit_frame_position | rv2hill | {_IMPORT}{ELEMENTS}{STATE}value = np.ravel(om.rv2hill(r, w, r + v2, w + tau))
+== orbit_frame_back | hill2rv | {_IMPORT}{ELEMENTS}{STATE}value = np.ravel(om.hill2rv(r, w, v2, tau))
+== orbit_equinoctial | clElem2eqElem
+{_IMPORT}{ELEMENTS}eq = om.EquinoctialElements()
+om.clElem2eqElem(oe, eq)
+value = [eq.a, eq.P1, eq.P2, eq.Q1, eq.Q2, np.cos(eq.l), np.sin(eq.l), np.cos(eq.L), np.sin(eq.L)]
+== gravity_point_mass | PointMassGravityModel, computeField
+{_FIELD.format("pointMassGravityModel", "PointMassGravityModel", MU, "")}
+== gravity_harmonics | SphericalHarmonicsGravityModel, computeField
+{_FIELD.format("sphericalHarmonicsGravityModel", "SphericalHarmonicsGravityModel", MU, _coefficients())}
+""")
 for _end, _own in (("", ""), ("_open", _OPEN)):
     for _kind in ("", "_parab"):
         _name = f":{_kind[1:]}" if _kind else ""
-        WAYS |= {
-            f"orbit_state{_end}{_name}": Way(
-                f"elem2rv{_kind}", f"{_IMPORT}{ELEMENTS}{_own}value = np.ravel(om.elem2rv{_kind}({MU}, oe))"
-            ),
-            f"orbit_elements{_end}{_name}": Way(
-                f"rv2elem{_kind}",
-                f"{_IMPORT}{ELEMENTS}{_own}{STATE}oe = om.rv2elem{_kind}({MU}, r, w)\n{_LISTED}",
-            ),
-        }
+        WAYS |= ways_of(f"""
+== orbit_state{_end}{_name} | elem2rv{_kind} | {_IMPORT}{ELEMENTS}{_own}value = np.ravel(om.elem2rv{_kind}({MU}, oe))
+== orbit_elements{_end}{_name} | rv2elem{_kind}
+{_IMPORT}{ELEMENTS}{_own}{STATE}oe = om.rv2elem{_kind}({MU}, r, w)
+{_LISTED}
+""")
 # Of a sum over degrees the last part: it is as many digits short as it is smaller than the largest.
 for _n in ZONAL:
     _less = f" - om.jPerturb(r, {_n - 1}, 'CELESTIAL_EARTH')" if _n > 2 else ""

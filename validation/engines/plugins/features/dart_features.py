@@ -7,7 +7,7 @@ from ...truth.features.drives import ACCELERATION, FORCE, FRICTION, LIMIT, MASS,
 from ...truth.features.parameters import GRAVITY, MASSES
 from ...truth.geometry.poses import CENTRE, MOMENTS
 from ...truth.geometry.poses import MASS as OF_BODY
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 
 _SLIDE = f"""world, s = dart.simulation.World(), dart.dynamics.Skeleton('s')
 world.setTimeStep({STEP})
@@ -36,57 +36,47 @@ def _bound(what: str, size: float) -> str:
     return f"j.set{what}LowerLimit(0, {-size})\nj.set{what}UpperLimit(0, {size})\n"
 
 
-WAYS = {
-    "slide_force": Way("setActuatorType FORCE, setCommand", _driven("FORCE")),
-    "slide_force:setForce": Way("Joint.setForce", f"{_FREE}{_AT}j.setForce(0, v[0])\n{_STEP}"),
-    "slide_force:setCommands": Way("Skeleton.setCommands", f"{_FREE}{_AT}s.setCommands(v[:1])\n{_STEP}"),
-    "slide_force:DegreeOfFreedom": Way(
-        "DegreeOfFreedom.setCommand", f"{_FREE}{_AT}s.getDof(0).setCommand(v[0])\n{_STEP}"
-    ),
-    "slide_force:clone": Way(
-        "World.clone",
-        f"{_FREE}{_AT}world = world.clone()\nj = world.getSkeleton(0).getJoint(0)\n{_COMMAND}{_STEP}",
-    ),
-    "slide_force_bounded": Way("setForceUpperLimit", _driven("FORCE", _bound("Force", FORCE))),
-    "slide_passive": Way("setActuatorType PASSIVE", _driven("PASSIVE", command="")),
-    "slide_velocity": Way("setActuatorType VELOCITY", _driven("VELOCITY")),
-    "slide_velocity_bounded": Way(
-        "setActuatorType VELOCITY, setVelocityUpperLimit", _driven("VELOCITY", _bound("Velocity", SPEED))
-    ),
-    "slide_acceleration": Way("setActuatorType ACCELERATION", _driven("ACCELERATION")),
-    "slide_acceleration_bounded": Way(
-        "setActuatorType ACCELERATION, setAccelerationUpperLimit",
-        _driven("ACCELERATION", _bound("Acceleration", ACCELERATION)),
-    ),
-    "slide_locked": Way("setActuatorType LOCKED", _driven("LOCKED", command="")),
-    "slide_servo": Way("setActuatorType SERVO, step", _driven("SERVO", _bound("Force", 1e9)), _MIXED),
-    "slide_servo_bounded": Way(
-        "setActuatorType SERVO, setForceUpperLimit, step", _driven("SERVO", _bound("Force", FORCE)), _MIXED
-    ),
-    "slide_friction": Way("setCoulombFriction", f"{_FREE}j.setCoulombFriction(0, {FRICTION})\n{_AT}{_STEP}", _MIXED),
-    "slide_at_limit": Way(
-        "setLimitEnforcement",
-        f"{_FREE}{_ON_LIMIT}j.setPosition(0, {LIMIT})\nj.setVelocity(0, abs(a[0]))\n{_STEP}",
-        _MIXED,
-    ),
-    "slide_from_limit": Way(
-        "setLimitEnforcement",
-        f"{_FREE}{_ON_LIMIT}j.setPosition(0, {LIMIT})\nj.setVelocity(0, -abs(a[0]))\n{_STEP}",
-        _MIXED,
-    ),
-    "slide_held_at_limit": Way(
-        "setLimitEnforcement, under a force",
-        f"{_SLIDE.replace('PULL', '9.0')}{_ON_LIMIT}j.setPosition(0, {LIMIT})\nj.setForce(0, abs(v[0]))\n{_STEP}",
-        _MIXED,
-    ),
-    "slide_servo_from_limit": Way(
-        "setCommand of a SERVO at a limit, step",
-        f"{_SLIDE.replace('PULL', '9.0')}j.setActuatorType(dart.dynamics.ActuatorType.SERVO)\n{_bound('Force', 1e9)}"
-        f"{_ON_LIMIT}j.setPosition(0, {LIMIT})\nfor _ in range(8): j.setCommand(0, 1.0); world.step()\n"
-        f"j.setCommand(0, -abs(v[0]) - 1)\n{_STEP}",
-        _MIXED,
-    ),
-}
+WAYS = ways_of(f"""
+== slide_force | setActuatorType FORCE, setCommand | {_driven("FORCE")}
+== slide_force:setForce | Joint.setForce | {_FREE}{_AT}j.setForce(0, v[0])\n{_STEP}
+== slide_force:setCommands | Skeleton.setCommands | {_FREE}{_AT}s.setCommands(v[:1])\n{_STEP}
+== slide_force:DegreeOfFreedom | DegreeOfFreedom.setCommand | {_FREE}{_AT}s.getDof(0).setCommand(v[0])\n{_STEP}
+== slide_force:clone | World.clone
+{_FREE}{_AT}world = world.clone()
+j = world.getSkeleton(0).getJoint(0)
+{_COMMAND}{_STEP}
+== slide_force_bounded | setForceUpperLimit | {_driven("FORCE", _bound("Force", FORCE))}
+== slide_passive | setActuatorType PASSIVE | {_driven("PASSIVE", command="")}
+== slide_velocity | setActuatorType VELOCITY | {_driven("VELOCITY")}
+== slide_velocity_bounded | setActuatorType VELOCITY, setVelocityUpperLimit
+{_driven("VELOCITY", _bound("Velocity", SPEED))}
+== slide_acceleration | setActuatorType ACCELERATION | {_driven("ACCELERATION")}
+== slide_acceleration_bounded | setActuatorType ACCELERATION, setAccelerationUpperLimit
+{_driven("ACCELERATION", _bound("Acceleration", ACCELERATION))}
+== slide_locked | setActuatorType LOCKED | {_driven("LOCKED", command="")}
+== slide_servo ~ {_MIXED} | setActuatorType SERVO, step | {_driven("SERVO", _bound("Force", 1000000000.0))}
+== slide_servo_bounded ~ {_MIXED} | setActuatorType SERVO, setForceUpperLimit, step
+{_driven("SERVO", _bound("Force", FORCE))}
+== slide_friction ~ {_MIXED} | setCoulombFriction | {_FREE}j.setCoulombFriction(0, {FRICTION})\n{_AT}{_STEP}
+== slide_at_limit ~ {_MIXED} | setLimitEnforcement
+{_FREE}{_ON_LIMIT}j.setPosition(0, {LIMIT})
+j.setVelocity(0, abs(a[0]))
+{_STEP}
+== slide_from_limit ~ {_MIXED} | setLimitEnforcement
+{_FREE}{_ON_LIMIT}j.setPosition(0, {LIMIT})
+j.setVelocity(0, -abs(a[0]))
+{_STEP}
+== slide_held_at_limit ~ {_MIXED} | setLimitEnforcement, under a force
+{_SLIDE.replace("PULL", "9.0")}{_ON_LIMIT}j.setPosition(0, {LIMIT})
+j.setForce(0, abs(v[0]))
+{_STEP}
+== slide_servo_from_limit ~ {_MIXED} | setCommand of a SERVO at a limit, step
+{_SLIDE.replace("PULL", "9.0")}j.setActuatorType(dart.dynamics.ActuatorType.SERVO)
+{_bound("Force", 1000000000.0)}{_ON_LIMIT}j.setPosition(0, {LIMIT})
+for _ in range(8): j.setCommand(0, 1.0); world.step()
+j.setCommand(0, -abs(v[0]) - 1)
+{_STEP}
+""")
 
 _SLIDES = f"""s, slides, bodies = dart.dynamics.Skeleton('s'), [], []
 s.setGravity(np.array({list(GRAVITY)}))
@@ -102,40 +92,36 @@ _SPEEDS = "value = [j.getVelocity(0) for j in slides]"
 _FORWARD = "s.setTimeStep(0.0)\ns.computeForwardDynamics()\nvalue = [j.getAcceleration(0) for j in slides]"
 _X = "x = np.abs(v) + 0.5\n"
 _BACK = "value = [s.getDof(k).getPosition() for k in range(3)]"
-WAYS |= {
-    "coordinates_set": Way("Joint.setPosition", f"{_SLIDES}{_STATE}value = s.getPositions()"),
-    "coordinates_set:resetPositions": Way(
-        "setInitialPosition, resetPositions",
-        f"{_SLIDES}for j, x in zip(slides, v): j.setInitialPosition(0, x)\ns.resetPositions()\n{_READ}",
-    ),
-    "coordinates_set:DegreeOfFreedom": Way(
-        "DegreeOfFreedom.setInitialPosition, resetPosition",
-        f"{_SLIDES}for k in range(3): s.getDof(k).setInitialPosition(v[k]); s.getDof(k).resetPosition()\n{_BACK}",
-    ),
-    "coordinates_set:some": Way(
-        "Skeleton.setPositions of some", f"{_SLIDES}s.setPositions([2, 0, 1], v[[2, 0, 1]])\n{_READ}"
-    ),
-    "coordinates_set:clone": Way("Skeleton.clone", f"{_SLIDES}{_STATE}value = s.clone().getPositions()"),
-    "speeds_set": Way("Joint.setVelocity", f"{_SLIDES}{_STATE}value = s.getVelocities()"),
-    "speeds_set:resetVelocities": Way(
-        "setInitialVelocity, resetVelocities",
-        f"{_SLIDES}for j, x in zip(slides, a): j.setInitialVelocity(0, x)\ns.resetVelocities()\n{_SPEEDS}",
-    ),
-    "speeds_set:integrateVelocities": Way(
-        "integrateVelocities", f"{_SLIDES}s.setAccelerations(4 * a)\ns.integrateVelocities(0.25)\n{_SPEEDS}"
-    ),
-    "accelerations_forced": Way("Skeleton.setForces", f"{_SLIDES}s.setForces(tau)\n{_FORWARD}"),
-    "accelerations_forced:setCommands": Way("Skeleton.setCommands", f"{_SLIDES}s.setCommands(tau)\n{_FORWARD}"),
-    "accelerations_forced:DegreeOfFreedom": Way(
-        "DegreeOfFreedom.setForce", f"{_SLIDES}for k in range(3): s.getDof(k).setForce(tau[k])\n{_FORWARD}"
-    ),
-    "accelerations_forced:addExtForce": Way(
-        "addExtForce",
-        f"{_SLIDES}for b, f in zip(bodies, tau[:, None] * np.eye(3)): b.addExtForce(f)\n{_FORWARD}",
-    ),
-    "masses_set": Way(
-        "BodyNode.setMass", f"{_X}{_SLIDES}for b, y in zip(bodies, x): b.setMass(y)\nvalue = s.getMassMatrix()"
-    ),
+WAYS |= ways_of(f"""
+== coordinates_set | Joint.setPosition | {_SLIDES}{_STATE}value = s.getPositions()
+== coordinates_set:resetPositions | setInitialPosition, resetPositions
+{_SLIDES}for j, x in zip(slides, v): j.setInitialPosition(0, x)
+s.resetPositions()
+{_READ}
+== coordinates_set:DegreeOfFreedom | DegreeOfFreedom.setInitialPosition, resetPosition
+{_SLIDES}for k in range(3): s.getDof(k).setInitialPosition(v[k]); s.getDof(k).resetPosition()
+{_BACK}
+== coordinates_set:some | Skeleton.setPositions of some | {_SLIDES}s.setPositions([2, 0, 1], v[[2, 0, 1]])\n{_READ}
+== coordinates_set:clone | Skeleton.clone | {_SLIDES}{_STATE}value = s.clone().getPositions()
+== speeds_set | Joint.setVelocity | {_SLIDES}{_STATE}value = s.getVelocities()
+== speeds_set:resetVelocities | setInitialVelocity, resetVelocities
+{_SLIDES}for j, x in zip(slides, a): j.setInitialVelocity(0, x)
+s.resetVelocities()
+{_SPEEDS}
+== speeds_set:integrateVelocities | integrateVelocities
+{_SLIDES}s.setAccelerations(4 * a)
+s.integrateVelocities(0.25)
+{_SPEEDS}
+== accelerations_forced | Skeleton.setForces | {_SLIDES}s.setForces(tau)\n{_FORWARD}
+== accelerations_forced:setCommands | Skeleton.setCommands | {_SLIDES}s.setCommands(tau)\n{_FORWARD}
+== accelerations_forced:DegreeOfFreedom | DegreeOfFreedom.setForce
+{_SLIDES}for k in range(3): s.getDof(k).setForce(tau[k])
+{_FORWARD}
+== accelerations_forced:addExtForce | addExtForce
+{_SLIDES}for b, f in zip(bodies, tau[:, None] * np.eye(3)): b.addExtForce(f)
+{_FORWARD}
+== masses_set | BodyNode.setMass | {_X}{_SLIDES}for b, y in zip(bodies, x): b.setMass(y)\nvalue = s.getMassMatrix()
+""") | {
     **{
         f"limits_set{way}": Way(
             name,
@@ -188,89 +174,77 @@ _MOVING = (
 _LISTED = "I = dart.dynamics.Inertia()\n"
 _TENSOR = "value = np.roll(I.getSpatialTensor(), (3, 3), (0, 1))"
 _J = f"J = np.array({[*map(list, MOMENTS)]})\n"
-WAYS |= {
-    "pose_composed:SimpleFrame": Way("SimpleFrame, of frames in frames", f"{_TWO}Z = two.getTransform(){_FLAT}"),
-    "pose_composed:setRelativeTransform": Way(
-        "SimpleFrame.setRelativeTransform",
-        f"{_ONE}two = dart.dynamics.SimpleFrame(one, 'two')\n"
-        f"two.setRelativeTransform(Y)\nZ = two.getTransform(){_FLAT}",
-    ),
-    "pose_composed:setTransform": Way(
-        "SimpleFrame.setTransform of another frame",
-        f"{_ONE}two = dart.dynamics.SimpleFrame(W, 'two')\ntwo.setTransform(Y, one)\nZ = two.getTransform(){_FLAT}",
-    ),
-    "pose_composed:spawnChildSimpleFrame": Way(
-        "spawnChildSimpleFrame", f"{_ONE}two = one.spawnChildSimpleFrame('two', Y)\nZ = two.getTransform(){_FLAT}"
-    ),
-    "pose_composed:FreeJoint": Way(
-        "FreeJoint.setTransform of a frame", f"{_ONE}{_LOOSE}j.setTransform(Y, one)\nZ = b.getTransform(){_FLAT}"
-    ),
-    "pose_composed:joint frames": Way(
-        "setTransformFromParentBodyNode, setTransformFromChildBodyNode",
-        f"{_XY}s = dart.dynamics.Skeleton('s')\nj, b = s.createWeldJointAndBodyNodePair(None)\n"
-        "j.setTransformFromParentBodyNode(X)\n"
-        f"j.setTransformFromChildBodyNode(Y.inverse())\nZ = b.getTransform(){_FLAT}",
-    ),
-    "pose_relative:SimpleFrame": Way(
-        "getTransform, withRespectTo",
-        f"{_ONE}two = dart.dynamics.SimpleFrame(W, 'two', Y)\nZ = two.getTransform(one){_FLAT}",
-    ),
-    "pose_relative:setTransform": Way(
-        "SimpleFrame.getRelativeTransform",
-        f"{_ONE}two = dart.dynamics.SimpleFrame(one, 'two')\n"
-        f"two.setTransform(Y)\nZ = two.getRelativeTransform(){_FLAT}",
-    ),
-    "pose_inverse:FreeJoint": Way(
-        "FreeJoint.convertToPositions, convertToTransform",
-        f"{_XY}of = dart.dynamics.FreeJoint\nZ = of.convertToTransform(of.convertToPositions(X)).inverse(){_FLAT}",
-    ),
-    "pose_inverse:setTransformOf": Way(
-        "FreeJoint.setTransformOf",
-        f"{_XY}{_LOOSE}dart.dynamics.FreeJoint.setTransformOf(b, X)\nZ = b.getTransform().inverse(){_FLAT}",
-    ),
-    "rotation_matrix:BallJoint": Way(
-        "BallJoint.convertToPositions, convertToRotation",
-        f"{_R}value = dart.dynamics.BallJoint.convertToRotation(dart.dynamics.BallJoint.convertToPositions(R)).ravel()",
-    ),
-    "velocity_composed": Way(
-        "SimpleFrame.setClassicDerivatives, getLinearVelocity",
-        f"{_MOVING}one.setClassicDerivatives(v, a)\ntwo.setClassicDerivatives(v2, tau)\n"
-        "value = [*two.getLinearVelocity(), *two.getAngularVelocity()]",
-    ),
-    "velocity_composed:setRelativeSpatialVelocity": Way(
-        "SimpleFrame.setRelativeSpatialVelocity",
-        f"{_MOVING}one.setRelativeSpatialVelocity(np.r_[a, v])\ntwo.setRelativeSpatialVelocity(np.r_[tau, v2])\n"
-        "value = np.roll(two.getSpatialVelocity(), 3)",
-    ),
-    "velocity_composed:FreeJoint": Way(
-        "FreeJoint.setSpatialVelocity relative to a frame",
-        f"{_MOVING}{_LOOSE}j.setTransform(dart.math.Isometry3(np.eye(3), f))\none.setClassicDerivatives(v, a)\n"
-        "j.setSpatialVelocity(np.r_[tau, v2], one, one)\nvalue = [*b.getLinearVelocity(), *b.getAngularVelocity()]",
-    ),
-    "velocity_composed:FreeJoint in parts": Way(
-        "FreeJoint.setLinearVelocity, setAngularVelocity relative to a frame",
-        f"{_MOVING}{_LOOSE}j.setTransform(dart.math.Isometry3(np.eye(3), f))\none.setClassicDerivatives(v, a)\n"
-        "j.setLinearVelocity(v2, one, one)\nj.setAngularVelocity(tau, one, one)\n"
-        "value = [*b.getLinearVelocity(), *b.getAngularVelocity()]",
-    ),
-    "acceleration_composed": Way(
-        "SimpleFrame.setClassicDerivatives, getLinearAcceleration",
-        f"{_MOVING}one.setClassicDerivatives(np.zeros(3), a, v2, tau)\ntwo.setClassicDerivatives(v2, tau, v, a)\n"
-        "value = [*two.getLinearAcceleration(), *two.getAngularAcceleration()]",
-    ),
-    "spatial_inertia:setMoment": Way(
-        "Inertia.setMass, setLocalCOM, setMoment",
-        f"{_LISTED}{_J}I.setMass({OF_BODY}); I.setLocalCOM({list(CENTRE)}); I.setMoment(J)\n{_TENSOR}",
-    ),
-    "spatial_inertia:setSpatialTensor": Way(
-        "Inertia.setSpatialTensor",
-        f"{_J}K = dart.dynamics.Inertia({OF_BODY}, {list(CENTRE)}, "
-        f"J)\n{_LISTED}I.setSpatialTensor(K.getSpatialTensor())\n"
-        "I = dart.dynamics.Inertia(I.getMass(), I.getLocalCOM(), I.getMoment())\n" + _TENSOR,
-    ),
-    "spatial_inertia:BodyNode": Way(
-        "BodyNode.setMass, setLocalCOM, setMomentOfInertia",
-        f"{_LOOSE}{_J}b.setMass({OF_BODY}); b.setLocalCOM(np.array({list(CENTRE)}))\n"
-        f"b.setMomentOfInertia(J[0, 0], J[1, 1], J[2, 2], J[0, 1], J[0, 2], J[1, 2])\nI = b.getInertia()\n{_TENSOR}",
-    ),
-}
+WAYS |= ways_of(f"""
+== pose_composed:SimpleFrame | SimpleFrame, of frames in frames | {_TWO}Z = two.getTransform(){_FLAT}
+== pose_composed:setRelativeTransform | SimpleFrame.setRelativeTransform
+{_ONE}two = dart.dynamics.SimpleFrame(one, 'two')
+two.setRelativeTransform(Y)
+Z = two.getTransform(){_FLAT}
+== pose_composed:setTransform | SimpleFrame.setTransform of another frame
+{_ONE}two = dart.dynamics.SimpleFrame(W, 'two')
+two.setTransform(Y, one)
+Z = two.getTransform(){_FLAT}
+== pose_composed:spawnChildSimpleFrame | spawnChildSimpleFrame
+{_ONE}two = one.spawnChildSimpleFrame('two', Y)
+Z = two.getTransform(){_FLAT}
+== pose_composed:FreeJoint | FreeJoint.setTransform of a frame
+{_ONE}{_LOOSE}j.setTransform(Y, one)
+Z = b.getTransform(){_FLAT}
+== pose_composed:joint frames | setTransformFromParentBodyNode, setTransformFromChildBodyNode
+{_XY}s = dart.dynamics.Skeleton('s')
+j, b = s.createWeldJointAndBodyNodePair(None)
+j.setTransformFromParentBodyNode(X)
+j.setTransformFromChildBodyNode(Y.inverse())
+Z = b.getTransform(){_FLAT}
+== pose_relative:SimpleFrame | getTransform, withRespectTo
+{_ONE}two = dart.dynamics.SimpleFrame(W, 'two', Y)
+Z = two.getTransform(one){_FLAT}
+== pose_relative:setTransform | SimpleFrame.getRelativeTransform
+{_ONE}two = dart.dynamics.SimpleFrame(one, 'two')
+two.setTransform(Y)
+Z = two.getRelativeTransform(){_FLAT}
+== pose_inverse:FreeJoint | FreeJoint.convertToPositions, convertToTransform
+{_XY}of = dart.dynamics.FreeJoint
+Z = of.convertToTransform(of.convertToPositions(X)).inverse(){_FLAT}
+== pose_inverse:setTransformOf | FreeJoint.setTransformOf
+{_XY}{_LOOSE}dart.dynamics.FreeJoint.setTransformOf(b, X)
+Z = b.getTransform().inverse(){_FLAT}
+== rotation_matrix:BallJoint | BallJoint.convertToPositions, convertToRotation
+{_R}value = dart.dynamics.BallJoint.convertToRotation(dart.dynamics.BallJoint.convertToPositions(R)).ravel()
+== velocity_composed | SimpleFrame.setClassicDerivatives, getLinearVelocity
+{_MOVING}one.setClassicDerivatives(v, a)
+two.setClassicDerivatives(v2, tau)
+value = [*two.getLinearVelocity(), *two.getAngularVelocity()]
+== velocity_composed:setRelativeSpatialVelocity | SimpleFrame.setRelativeSpatialVelocity
+{_MOVING}one.setRelativeSpatialVelocity(np.r_[a, v])
+two.setRelativeSpatialVelocity(np.r_[tau, v2])
+value = np.roll(two.getSpatialVelocity(), 3)
+== velocity_composed:FreeJoint | FreeJoint.setSpatialVelocity relative to a frame
+{_MOVING}{_LOOSE}j.setTransform(dart.math.Isometry3(np.eye(3), f))
+one.setClassicDerivatives(v, a)
+j.setSpatialVelocity(np.r_[tau, v2], one, one)
+value = [*b.getLinearVelocity(), *b.getAngularVelocity()]
+== velocity_composed:FreeJoint in parts | FreeJoint.setLinearVelocity, setAngularVelocity relative to a frame
+{_MOVING}{_LOOSE}j.setTransform(dart.math.Isometry3(np.eye(3), f))
+one.setClassicDerivatives(v, a)
+j.setLinearVelocity(v2, one, one)
+j.setAngularVelocity(tau, one, one)
+value = [*b.getLinearVelocity(), *b.getAngularVelocity()]
+== acceleration_composed | SimpleFrame.setClassicDerivatives, getLinearAcceleration
+{_MOVING}one.setClassicDerivatives(np.zeros(3), a, v2, tau)
+two.setClassicDerivatives(v2, tau, v, a)
+value = [*two.getLinearAcceleration(), *two.getAngularAcceleration()]
+== spatial_inertia:setMoment | Inertia.setMass, setLocalCOM, setMoment
+{_LISTED}{_J}I.setMass({OF_BODY}); I.setLocalCOM({list(CENTRE)}); I.setMoment(J)
+{_TENSOR}
+== spatial_inertia:setSpatialTensor | Inertia.setSpatialTensor
+{_J}K = dart.dynamics.Inertia({OF_BODY}, {list(CENTRE)}, J)
+{_LISTED}I.setSpatialTensor(K.getSpatialTensor())
+I = dart.dynamics.Inertia(I.getMass(), I.getLocalCOM(), I.getMoment())
+{_TENSOR}
+== spatial_inertia:BodyNode | BodyNode.setMass, setLocalCOM, setMomentOfInertia
+{_LOOSE}{_J}b.setMass({OF_BODY}); b.setLocalCOM(np.array({list(CENTRE)}))
+b.setMomentOfInertia(J[0, 0], J[1, 1], J[2, 2], J[0, 1], J[0, 2], J[1, 2])
+I = b.getInertia()
+{_TENSOR}
+""")

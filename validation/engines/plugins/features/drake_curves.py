@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...truth.geometry.curves import BREAKS, KNOTS, ORDER
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 
 _BEGIN = f"""t, breaks, x = 1.5 + 1.25 * v2[0] / (1 + abs(v2[0])), {list(BREAKS)}, np.array([v, a, tau, v2])
 P, columns = drake.PiecewisePolynomial, np.array([v, a, tau, v2]).T
@@ -56,128 +56,90 @@ _POSES = (
     "curve = drake.PiecewisePose.MakeLinear(breaks[:3], poses)\n"
 )
 _FLAT = "value = [*X.translation(), *X.rotation().matrix().flat]"
-WAYS |= {
-    "curve_straight:AppendFirstOrderSegment": Way(
-        "AppendFirstOrderSegment",
-        f"{_BEGIN}curve = P.FirstOrderHold(breaks[:3], columns[:, :3])\n{_REST}{_VALUE}",
-    ),
-    "curve_straight:ConcatenateInTime": Way(
-        "ConcatenateInTime",
-        f"{_BEGIN}curve = P.FirstOrderHold(breaks[:2], columns[:, :2])\n"
-        f"curve.ConcatenateInTime(P.FirstOrderHold(breaks[1:], columns[:, 1:]))\n{_VALUE}",
-    ),
-    "curve_straight:CompositeTrajectory": Way(
-        "CompositeTrajectory",
-        f"{_BEGIN}curve = drake.CompositeTrajectory([P.FirstOrderHold(breaks[:2], columns[:, :2]),"
-        f" P.FirstOrderHold(breaks[1:], columns[:, 1:])])\n{_VALUE}",
-    ),
-    "curve_straight:StackedTrajectory": Way(
-        "StackedTrajectory",
-        f"{_BEGIN}curve = drake.StackedTrajectory()\n"
-        "for k in range(3): curve.Append(P.FirstOrderHold(breaks, columns[k : k + 1]))\n" + _VALUE,
-    ),
-    "curve_straight:slice": Way(
-        "slice",
-        f"{_BEGIN}{_STRAIGHT}k = curve.get_segment_index(t)\ncurve = curve.slice(k, 1)\n{_VALUE}",
-    ),
-    "curve_hermite:shiftRight": Way(
-        "shiftRight", f"{_BEGIN}{_HERMITE}curve.shiftRight(2.5)\nvalue = curve.value(t + 2.5)"
-    ),
-    "curve_hermite:ScaleTime": Way(
-        "ScaleTime", f"{_BEGIN}{_HERMITE}curve.ScaleTime(0.5)\nvalue = curve.value(t / 2).ravel()"
-    ),
-    "curve_hermite:ReverseTime": Way(
-        "ReverseTime", f"{_BEGIN}{_HERMITE}curve.ReverseTime()\nvalue = curve.value(-t).ravel()"
-    ),
-    "curve_hermite:Transpose": Way("Transpose", f"{_BEGIN}{_HERMITE}curve = curve.Transpose()\n{_VALUE}"),
-    "curve_hermite:Block": Way(
-        "Block, Reshape",
-        f"{_BEGIN}{_HERMITE}value = np.r_[curve.Block(0, 0, 1, 1).value(t), curve.Block(1, 0, 2, 1).value(t)].ravel()",
-    ),
-    "curve_hermite:AppendCubicHermiteSegment": Way(
-        "AppendCubicHermiteSegment",
-        f"{_BEGIN}curve = P.CubicHermite(breaks[:3], columns[:, :3], columns[:, :0:-1])\n"
-        f"curve.AppendCubicHermiteSegment(breaks[3], x[3], x[0])\n{_VALUE}",
-    ),
-    "curve_hermite:getPolynomial": Way(
-        "getPolynomial, Polynomial.EvaluateUnivariate",
-        f"{_BEGIN}{_HERMITE}k = curve.get_segment_index(t)\n"
-        "value = [curve.getPolynomial(k, i).EvaluateUnivariate(t - breaks[k]) for i in range(3)]",
-    ),
-    "curve_hermite_rate:Polynomial.Derivative": Way(
-        "Polynomial.Derivative",
-        f"{_BEGIN}{_HERMITE}k = curve.get_segment_index(t)\n"
-        "value = [curve.getPolynomial(k, i).Derivative(1).EvaluateUnivariate(t - breaks[k]) for i in range(3)]",
-    ),
-    "curve_hermite_rate:DerivativeTrajectory": Way(
-        "DerivativeTrajectory", f"{_BEGIN}{_HERMITE}curve = drake.DerivativeTrajectory(curve)\n{_VALUE}"
-    ),
-    "curve_hermite_rate:TrajectorySource": Way(
-        "TrajectorySource",
-        f"{_BEGIN}{_HERMITE}source = drake.TrajectorySource(curve, "
-        "1)\nc = source.CreateDefaultContext()\nc.SetTime(t)\n"
-        "value = source.get_output_port().Eval(c)[3:]",
-    ),
-    "curve_hermite:FunctionHandleTrajectory": Way(
-        "FunctionHandleTrajectory",
-        f"{_BEGIN}{_HERMITE}of = curve\n"
-        f"curve = drake.FunctionHandleTrajectory(lambda t: of.value(t), 3, 1, 0.0, 3.0)\n{_VALUE}",
-    ),
-    "curve_bernstein:ElevateOrder": Way(
-        "BezierCurve.ElevateOrder", f"{_BEGIN}{_CURVES['bernstein'][1]}curve.ElevateOrder()\n{_VALUE}"
-    ),
-    "curve_bernstein:BernsteinBasis": Way(
-        "BezierCurve.BernsteinBasis",
-        f"{_BEGIN}{_CURVES['bernstein'][1]}value = sum(curve.BernsteinBasis(k, t) * x[k] for k in range(4))",
-    ),
-    "curve_bernstein:AsLinearInControlPoints": Way(
-        "BezierCurve.AsLinearInControlPoints",
-        f"{_BEGIN}{_CURVES['bernstein'][1]}z = t / breaks[-1]\n"
-        "weights = np.array([(1 - z)**3, 3 * z * (1 - z)**2, 3 * z**2 * (1 - z), z**3])\n"
-        "value = columns @ curve.AsLinearInControlPoints(0).toarray() @ weights",
-    ),
-    "curve_spline:EvaluateCurve": Way(
-        "BsplineBasis.EvaluateCurve", f"{_BEGIN}{_CURVES['spline'][1]}value = basis.EvaluateCurve(list(x), t)"
-    ),
-    "curve_spline:EvaluateBasisFunctionI": Way(
-        "BsplineBasis.EvaluateBasisFunctionI",
-        f"{_BEGIN}{_CURVES['spline'][1]}value = sum(basis.EvaluateBasisFunctionI(k, t) * x[k] for k in range(4))",
-    ),
-    "curve_spline:EvaluateLinearInControlPoints": Way(
-        "BsplineTrajectory.EvaluateLinearInControlPoints",
-        f"{_BEGIN}{_CURVES['spline'][1]}value = columns @ curve.EvaluateLinearInControlPoints(t)",
-    ),
-    "curve_spline:InsertKnots": Way(
-        "BsplineTrajectory.InsertKnots",
-        f"{_BEGIN}{_CURVES['spline'][1]}curve.InsertKnots([0.5, 1.25])\n{_VALUE}",
-    ),
-    "curve_backwards": Way(
-        "ReverseTime, ScaleTime, shiftRight",
-        f"{_BEGIN}{_HERMITE}curve.ReverseTime()\ncurve.shiftRight(breaks[-1])\ncurve.ScaleTime(2.0)\n{_VALUE}",
-    ),
-    "curve_along_path": Way(
-        "PathParameterizedTrajectory, EvalDerivative",
-        f"{_BEGIN}{_HERMITE}end = breaks[-1]\n"
-        "path = drake.PiecewisePolynomial.LagrangeInterpolatingPolynomial("
-        "[0.0, end / 2, end], np.array([[0.0, end / 4, end]]))\n"
-        "value = drake.PathParameterizedTrajectory(curve, path).EvalDerivative(t, 1).ravel()",
-    ),
-    "curve_growing": Way(
-        "ExponentialPlusPiecewisePolynomial",
-        f"{_BEGIN}{_STRAIGHT}alpha = np.stack([v * np.exp(s / 4) for s in breaks[:-1]], axis=1)\n"
-        "curve = drake.ExponentialPlusPiecewisePolynomial(np.eye(3), np.eye(3) / 4, alpha, curve)\n" + _VALUE,
-    ),
-    "turns_between": Way("PiecewiseQuaternionSlerp", f"{_SLERP}value = curve.orientation(t).rotation().ravel()"),
-    "turns_between:PiecewisePose": Way(
-        "PiecewisePose.get_orientation_trajectory",
-        f"{_POSES}value = curve.get_orientation_trajectory().orientation(t).rotation().ravel()",
-    ),
-    "turns_between:Append": Way(
-        "PiecewiseQuaternionSlerp.Append",
-        f"{_BEGIN}{_QUATERNIONS}curve = drake.PiecewiseQuaternionSlerp(breaks[:2], turns[:2])\n"
-        "curve.Append(breaks[2], turns[2])\nvalue = curve.orientation(t).rotation().ravel()",
-    ),
-    "turning_between": Way("PiecewiseQuaternionSlerp.angular_velocity", f"{_SLERP}value = curve.angular_velocity(t)"),
-    "pose_between": Way("PiecewisePose.GetPose", f"{_POSES}X = curve.GetPose(t)\n{_FLAT}"),
-    "twist_between": Way("PiecewisePose.GetVelocity", f"{_POSES}value = np.roll(curve.GetVelocity(t), 3)"),
-}
+WAYS |= ways_of(f"""
+== curve_straight:AppendFirstOrderSegment | AppendFirstOrderSegment
+{_BEGIN}curve = P.FirstOrderHold(breaks[:3], columns[:, :3])
+{_REST}{_VALUE}
+== curve_straight:ConcatenateInTime | ConcatenateInTime
+{_BEGIN}curve = P.FirstOrderHold(breaks[:2], columns[:, :2])
+curve.ConcatenateInTime(P.FirstOrderHold(breaks[1:], columns[:, 1:]))
+{_VALUE}
+== curve_straight:CompositeTrajectory | CompositeTrajectory
+{_BEGIN}curve = drake.CompositeTrajectory([P.FirstOrderHold(breaks[:2], columns[:, :2]), P.FirstOrderHold(breaks[1:], \
+columns[:, 1:])])
+{_VALUE}
+== curve_straight:StackedTrajectory | StackedTrajectory
+{_BEGIN}curve = drake.StackedTrajectory()
+for k in range(3): curve.Append(P.FirstOrderHold(breaks, columns[k : k + 1]))
+{_VALUE}
+== curve_straight:slice | slice | {_BEGIN}{_STRAIGHT}k = curve.get_segment_index(t)\ncurve = curve.slice(k, 1)\n{_VALUE}
+== curve_hermite:shiftRight | shiftRight | {_BEGIN}{_HERMITE}curve.shiftRight(2.5)\nvalue = curve.value(t + 2.5)
+== curve_hermite:ScaleTime | ScaleTime | {_BEGIN}{_HERMITE}curve.ScaleTime(0.5)\nvalue = curve.value(t / 2).ravel()
+== curve_hermite:ReverseTime | ReverseTime | {_BEGIN}{_HERMITE}curve.ReverseTime()\nvalue = curve.value(-t).ravel()
+== curve_hermite:Transpose | Transpose | {_BEGIN}{_HERMITE}curve = curve.Transpose()\n{_VALUE}
+== curve_hermite:Block | Block, Reshape
+{_BEGIN}{_HERMITE}value = np.r_[curve.Block(0, 0, 1, 1).value(t), curve.Block(1, 0, 2, 1).value(t)].ravel()
+== curve_hermite:AppendCubicHermiteSegment | AppendCubicHermiteSegment
+{_BEGIN}curve = P.CubicHermite(breaks[:3], columns[:, :3], columns[:, :0:-1])
+curve.AppendCubicHermiteSegment(breaks[3], x[3], x[0])
+{_VALUE}
+== curve_hermite:getPolynomial | getPolynomial, Polynomial.EvaluateUnivariate
+{_BEGIN}{_HERMITE}k = curve.get_segment_index(t)
+value = [curve.getPolynomial(k, i).EvaluateUnivariate(t - breaks[k]) for i in range(3)]
+== curve_hermite_rate:Polynomial.Derivative | Polynomial.Derivative
+{_BEGIN}{_HERMITE}k = curve.get_segment_index(t)
+value = [curve.getPolynomial(k, i).Derivative(1).EvaluateUnivariate(t - breaks[k]) for i in range(3)]
+== curve_hermite_rate:DerivativeTrajectory | DerivativeTrajectory
+{_BEGIN}{_HERMITE}curve = drake.DerivativeTrajectory(curve)
+{_VALUE}
+== curve_hermite_rate:TrajectorySource | TrajectorySource
+{_BEGIN}{_HERMITE}source = drake.TrajectorySource(curve, 1)
+c = source.CreateDefaultContext()
+c.SetTime(t)
+value = source.get_output_port().Eval(c)[3:]
+== curve_hermite:FunctionHandleTrajectory | FunctionHandleTrajectory
+{_BEGIN}{_HERMITE}of = curve
+curve = drake.FunctionHandleTrajectory(lambda t: of.value(t), 3, 1, 0.0, 3.0)
+{_VALUE}
+== curve_bernstein:ElevateOrder | BezierCurve.ElevateOrder
+{_BEGIN}{_CURVES["bernstein"][1]}curve.ElevateOrder()
+{_VALUE}
+== curve_bernstein:BernsteinBasis | BezierCurve.BernsteinBasis
+{_BEGIN}{_CURVES["bernstein"][1]}value = sum(curve.BernsteinBasis(k, t) * x[k] for k in range(4))
+== curve_bernstein:AsLinearInControlPoints | BezierCurve.AsLinearInControlPoints
+{_BEGIN}{_CURVES["bernstein"][1]}z = t / breaks[-1]
+weights = np.array([(1 - z)**3, 3 * z * (1 - z)**2, 3 * z**2 * (1 - z), z**3])
+value = columns @ curve.AsLinearInControlPoints(0).toarray() @ weights
+== curve_spline:EvaluateCurve | BsplineBasis.EvaluateCurve
+{_BEGIN}{_CURVES["spline"][1]}value = basis.EvaluateCurve(list(x), t)
+== curve_spline:EvaluateBasisFunctionI | BsplineBasis.EvaluateBasisFunctionI
+{_BEGIN}{_CURVES["spline"][1]}value = sum(basis.EvaluateBasisFunctionI(k, t) * x[k] for k in range(4))
+== curve_spline:EvaluateLinearInControlPoints | BsplineTrajectory.EvaluateLinearInControlPoints
+{_BEGIN}{_CURVES["spline"][1]}value = columns @ curve.EvaluateLinearInControlPoints(t)
+== curve_spline:InsertKnots | BsplineTrajectory.InsertKnots
+{_BEGIN}{_CURVES["spline"][1]}curve.InsertKnots([0.5, 1.25])
+{_VALUE}
+== curve_backwards | ReverseTime, ScaleTime, shiftRight
+{_BEGIN}{_HERMITE}curve.ReverseTime()
+curve.shiftRight(breaks[-1])
+curve.ScaleTime(2.0)
+{_VALUE}
+== curve_along_path | PathParameterizedTrajectory, EvalDerivative
+{_BEGIN}{_HERMITE}end = breaks[-1]
+path = drake.PiecewisePolynomial.LagrangeInterpolatingPolynomial([0.0, end / 2, end], np.array([[0.0, end / 4, end]]))
+value = drake.PathParameterizedTrajectory(curve, path).EvalDerivative(t, 1).ravel()
+== curve_growing | ExponentialPlusPiecewisePolynomial
+{_BEGIN}{_STRAIGHT}alpha = np.stack([v * np.exp(s / 4) for s in breaks[:-1]], axis=1)
+curve = drake.ExponentialPlusPiecewisePolynomial(np.eye(3), np.eye(3) / 4, alpha, curve)
+{_VALUE}
+== turns_between | PiecewiseQuaternionSlerp | {_SLERP}value = curve.orientation(t).rotation().ravel()
+== turns_between:PiecewisePose | PiecewisePose.get_orientation_trajectory
+{_POSES}value = curve.get_orientation_trajectory().orientation(t).rotation().ravel()
+== turns_between:Append | PiecewiseQuaternionSlerp.Append
+{_BEGIN}{_QUATERNIONS}curve = drake.PiecewiseQuaternionSlerp(breaks[:2], turns[:2])
+curve.Append(breaks[2], turns[2])
+value = curve.orientation(t).rotation().ravel()
+== turning_between | PiecewiseQuaternionSlerp.angular_velocity | {_SLERP}value = curve.angular_velocity(t)
+== pose_between | PiecewisePose.GetPose | {_POSES}X = curve.GetPose(t)\n{_FLAT}
+== twist_between | PiecewisePose.GetVelocity | {_POSES}value = np.roll(curve.GetVelocity(t), 3)
+""")

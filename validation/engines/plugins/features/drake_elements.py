@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from ...frames import ORIGIN
 from ...truth.features.elements import FORCES, HINGE, PROPELLERS, TORQUES, WING
 from ...truth.geometry.poses import CENTRE
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 
 _X = "R = drake.RotationMatrix(drake.Quaternion(q))\n"
 _Q = "Q = drake.RotationMatrix(drake.Quaternion(q2))\n"
@@ -70,19 +70,16 @@ p.set_gravity_enabled(m, False)
 p.Finalize()
 c = p.CreateDefaultContext()
 """
-WAYS = {
-    "bushing_wrench": Way("LinearBushingRollPitchYaw", _bushing(TORQUES, FORCES) + _GENERAL),
-    "bushing_wrench:CalcBushingSpatialForceOnFrameC": Way(
-        "LinearBushingRollPitchYaw.CalcBushingSpatialForceOnFrameC",
-        f"{_bushing(TORQUES, FORCES)}{_X}F = k.CalcBushingSpatialForceOnFrameC(c)\n"
-        f"F = F.Shift({[-x for x in CENTRE]}).Rotate(R)\n"
-        "value = [*F.translational(), *F.rotational()]",
-    ),
-    "bushing_wrench:CalcBushingSpatialForceOnFrameA": Way(
-        "LinearBushingRollPitchYaw.CalcBushingSpatialForceOnFrameA",
-        f"{_bushing(TORQUES, FORCES)}F = k.CalcBushingSpatialForceOnFrameA(c).Shift(a)\n"
-        "value = [*-F.translational(), *-F.rotational()]",
-    ),
+WAYS = ways_of(f"""
+== bushing_wrench | LinearBushingRollPitchYaw | {_bushing(TORQUES, FORCES)}{_GENERAL}
+== bushing_wrench:CalcBushingSpatialForceOnFrameC | LinearBushingRollPitchYaw.CalcBushingSpatialForceOnFrameC
+{_bushing(TORQUES, FORCES)}{_X}F = k.CalcBushingSpatialForceOnFrameC(c)
+F = F.Shift({[-x for x in CENTRE]}).Rotate(R)
+value = [*F.translational(), *F.rotational()]
+== bushing_wrench:CalcBushingSpatialForceOnFrameA | LinearBushingRollPitchYaw.CalcBushingSpatialForceOnFrameA
+{_bushing(TORQUES, FORCES)}F = k.CalcBushingSpatialForceOnFrameA(c).Shift(a)
+value = [*-F.translational(), *-F.rotational()]
+""") | {
     "bushing_wrench:parameters": Way(
         "LinearBushingRollPitchYaw.SetForceStiffnessConstants, SetTorqueDampingConstants",
         _bushing(*_OTHERS)

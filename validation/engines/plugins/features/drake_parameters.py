@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...interface import STEP
 from ...truth.features.parameters import COUPLED, DAMPING, GRAVITY, MASSES, REST, STIFFNESS
 from ..loops.drake_forces import SAP
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 
 _X = "x = np.abs(v) + 0.5\n"
 _UNIT = "drake.SpatialInertia(1.0, np.zeros(3), drake.UnitInertia(1.0, 1.0, 1.0))"
@@ -54,18 +54,13 @@ WAYS |= {
     )
     for way, (name, text) in _BY_GEAR.items()
 }
-WAYS |= {
-    "rotor_and_gear": Way(
-        "rotor_inertia, gear_ratio, calc_reflected_inertia",
-        f"{_BY_GEAR[':context'][1]}value = [motor.rotor_inertia(c), "
-        "motor.gear_ratio(c), motor.calc_reflected_inertia(c)]",
-    ),
-    "rotor_and_gear:default": Way(
-        "default_rotor_inertia, default_gear_ratio, default_reflected_inertia",
-        f"{_BY_GEAR[':after Finalize'][1]}"
-        "value = [motor.default_rotor_inertia(), motor.default_gear_ratio(), motor.default_reflected_inertia()]",
-    ),
-}
+WAYS |= ways_of(f"""
+== rotor_and_gear | rotor_inertia, gear_ratio, calc_reflected_inertia
+{_BY_GEAR[":context"][1]}value = [motor.rotor_inertia(c), motor.gear_ratio(c), motor.calc_reflected_inertia(c)]
+== rotor_and_gear:default | default_rotor_inertia, default_gear_ratio, default_reflected_inertia
+{_BY_GEAR[":after Finalize"][1]}value = [motor.default_rotor_inertia(), motor.default_gear_ratio(), \
+motor.default_reflected_inertia()]
+""")
 
 # Bodies of the two models are made in turns.
 _SLIDES = f"""p = drake.MultibodyPlant(TIME)
@@ -80,7 +75,6 @@ jj = (jx, jy, jz)
 """.replace("W)", "p.world_frame())")
 _MOTORS = "my, mz, mx = (p.AddJointActuator('m' + j.name(), j) for j in (jy, jz, jx))\n"
 _STATE = "for j, q, u in zip(jj, v, a): j.set_translation(c, q); j.set_translation_rate(c, u)\n"
-_READ = "value = [j.get_translation(c) for j in jj]"
 _PLACES = "qs, vs = ([getattr(j, name)() for j in jj] for name in ('position_start', 'velocity_start'))\n"
 _PLANT = _SLIDES.replace("TIME", "0.0")
 _MADE = f"{_PLANT}{_DONE}{_CONTEXT}{_PLACES}"
@@ -141,149 +135,114 @@ WAYS |= {
             ),
         )
     },
-    "coordinates_set:GetDefaultPositions": Way(
-        "GetDefaultPositions",
-        f"{_MADE}p.SetDefaultPositions(two, v[2:])\np.SetDefaultPositions(one, v[:2])\n"
-        "value = np.r_[p.GetDefaultPositions(one), p.GetDefaultPositions(two)]",
-    ),
-    "speeds_set": Way(
-        "SetVelocities of a model instance",
-        f"{_MADE}p.SetVelocities(c, two, a[2:])\np.SetVelocities(c, one, a[:2])\n"
-        "value = [j.get_translation_rate(c) for j in jj]",
-    ),
-    "speeds_set:array": Way(
-        "SetVelocitiesInArray",
-        f"{_MADE}x = np.zeros(3)\np.SetVelocitiesInArray(one, a[:2], x)\np.SetVelocitiesInArray(two, a[2:], x)\n"
-        "p.SetVelocities(c, x)\nvalue = p.GetVelocities(c)[vs]",
-    ),
-    "speeds_set:GetVelocitiesFromArray": Way(
-        "GetVelocitiesFromArray",
-        f"{_MADE}{_STATE}x = p.GetVelocities(c)\n"
-        "value = np.r_[p.GetVelocitiesFromArray(one, x), p.GetVelocitiesFromArray(two, x)]",
-    ),
-    "coordinates_set:GetPositionsFromArray": Way(
-        "GetPositionsFromArray",
-        f"{_MADE}{_STATE}x = p.GetPositions(c)\n"
-        "value = np.r_[p.GetPositionsFromArray(one, x), p.GetPositionsFromArray(two, x)]",
-    ),
-    "states_of_models": Way(
-        "GetPositionsAndVelocities of a model instance",
-        f"{_MADE}{_STATE}value = np.r_[p.GetPositionsAndVelocities(c, one), p.GetPositionsAndVelocities(c, two)]",
-    ),
-    "states_of_models:SetPositionsAndVelocities": Way(
-        "SetPositionsAndVelocities of a model instance",
-        f"{_MADE}p.SetPositionsAndVelocities(c, two, [v[2], a[2]])\n"
-        "p.SetPositionsAndVelocities(c, one, [*v[:2], *a[:2]])\n"
-        "x = np.c_[[j.get_translation(c) for j in jj], [j.get_translation_rate(c) for j in jj]]\n"
-        "value = [*x[:2, 0], *x[:2, 1], *x[2]]",
-    ),
-    "states_of_models:port": Way(
-        "get_state_output_port of a model instance",
-        f"{_MADE}{_STATE}value = np.r_[p.get_state_output_port(one).Eval(c), p.get_state_output_port(two).Eval(c)]",
-    ),
-    "states_of_models:MakeStateSelectorMatrix": Way(
-        "MakeStateSelectorMatrix",
-        f"{_MADE}{_STATE}x = p.MakeStateSelectorMatrix([j.index() for j in jj]) @ p.GetPositionsAndVelocities(c)\n"
-        "value = [x[0], x[1], x[3], x[4], x[2], x[5]]",
-    ),
-    "sums_of_models": Way(
-        "CalcTotalMass, CalcCenterOfMassPositionInWorld of model instances",
-        f"{_MADE}{_STATE}of = p.CalcCenterOfMassPositionInWorld\n"
-        "value = np.r_[p.CalcTotalMass(c), p.CalcTotalMass(c, [one]), p.CalcTotalMass(c, [two]),"
-        " of(c), of(c, [one]), of(c, [two]), p.CalcCenterOfMassTranslationalVelocityInWorld(c, [one])]",
-    ),
-    "momenta_of_models": Way(
-        "CalcSpatialMomentumInWorldAboutPoint of model instances",
-        f"{_MADE}{_STATE}L = p.CalcSpatialMomentumInWorldAboutPoint(c, [one], tau)\n"
-        "value = [*L.translational(), *L.rotational()]",
-    ),
-    "accelerations_forced": Way("applied_generalized_force input port", f"{_MADE}{_FORCED}{_ACCELERATION}"),
-    "accelerations_forced:AddInOneForce": Way(
-        "Joint.AddInOneForce",
-        f"{_MADE}{_FORCES}for j, y in zip(jj, tau): j.AddInOneForce(c, 0, y, f)\n"
-        "p.CalcForceElementsContribution(c, g := drake.MultibodyForces(p))\nf.AddInForces(g)\n"
-        "value = np.linalg.solve(p.CalcMassMatrix(c), -p.CalcInverseDynamics(c, np.zeros(3), f))[vs]",
-    ),
-    "accelerations_forced:actuation": Way(
-        "get_actuation_input_port of a model instance",
-        f"{_PLANT}{_MOTORS}{_DONE}{_CONTEXT}{_PLACES}"
-        "x = np.zeros(3)\nx[[m.input_start() for m in (mx, my, mz)]] = tau\n"
-        "for i in (one, two): p.get_actuation_input_port(i).FixValue(c, p.GetActuationFromArray(i, x))\n"
-        f"{_ACCELERATION}",
-    ),
-    "accelerations_forced:SetActuationInArray": Way(
-        "SetActuationInArray, MakeActuationMatrix",
-        f"{_PLANT}{_MOTORS}{_DONE}{_CONTEXT}{_PLACES}x = np.zeros(3)\n"
-        "p.SetActuationInArray(two, tau[2:], x)\np.SetActuationInArray(one, tau[1::-1], x)\n"
-        f"p.get_applied_generalized_force_input_port().FixValue(c, p.MakeActuationMatrix() @ x)\n{_ACCELERATION}",
-    ),
-    "accelerations_forced:MakeActuatorSelectorMatrix": Way(
-        "MakeActuatorSelectorMatrix",
-        f"{_PLANT}{_MOTORS}{_DONE}{_CONTEXT}{_PLACES}"
-        "x = p.MakeActuatorSelectorMatrix([m.index() for m in (mx, my, mz)]) @ tau\n"
-        f"p.get_actuation_input_port().FixValue(c, x)\n{_ACCELERATION}",
-    ),
-    "accelerations_forced:set_actuation_vector": Way(
-        "JointActuator.set_actuation_vector",
-        f"{_PLANT}{_MOTORS}{_DONE}{_CONTEXT}{_PLACES}x = np.zeros(3)\n"
-        "for m, y in zip((mx, my, mz), tau): m.set_actuation_vector([y], x)\n"
-        f"p.get_actuation_input_port().FixValue(c, x)\n{_ACCELERATION}",
-    ),
-    "masses_set": Way(
-        "RigidBody.SetMass",
-        f"{_X}{_MADE}for b, y in zip((bx, by, bz), x): b.SetMass(c, y)\nvalue = p.CalcMassMatrix(c)[np.ix_(vs, vs)]",
-    ),
-    "masses_set:SetSpatialInertiaInBodyFrame": Way(
-        "RigidBody.SetSpatialInertiaInBodyFrame",
-        f"{_X}{_MADE}for b, y in zip((bx, by, bz), x): b.SetSpatialInertiaInBodyFrame(c, {_INERTIA})\n"
-        "value = p.CalcMassMatrix(c)[np.ix_(vs, vs)]",
-    ),
-    "masses_set:AutoDiffXd": Way(
-        "RigidBody.SetMass, ToAutoDiffXd",
-        f"{_X}{_MADE}for b, y in zip((bx, by, bz), x): b.SetMass(c, y)\nad = p.ToAutoDiffXd()\n"
-        "d = ad.CreateDefaultContext()\nd.SetTimeStateAndParametersFrom(c)\n"
-        "value = np.array([[y.value() for y in row] for row in ad.CalcMassMatrix(d)])[np.ix_(vs, vs)]",
-    ),
-    "damping_set": Way(
-        "PrismaticJoint.SetDamping, AddInDamping",
-        f"{_X}{_MADE}{_STATE}for j, y in zip(jj, x): j.SetDamping(c, y)\n{_FORCES}"
-        "for j in jj: j.AddInDamping(c, f)\nvalue = f.generalized_forces()[vs]",
-    ),
-    "limits_set": Way(
-        "Joint.set_position_limits, set_velocity_limits, set_acceleration_limits",
-        f"{_X}{_PLANT}{_LIMITS}{_DONE}{_CONTEXT}{_PLACES}{_TOLD}",
-    ),
-    "limits_set:after Finalize": Way("Joint.set_position_limits after Finalize", f"{_X}{_MADE}{_LIMITS}{_TOLD}"),
-    "limits_set:Clone": Way(
-        "Joint.set_position_limits, Clone", f"{_X}{_PLANT}{_LIMITS}{_DONE}{_PLACES}p = p.Clone()\n{_TOLD}"
-    ),
-    "limits_set:joint": Way(
-        "Joint.position_lower_limits, velocity_upper_limits, acceleration_lower_limits",
-        f"{_X}{_MADE}{_LIMITS}value = [[getattr(j, f'{{of}}_{{end}}_limits')()[0] for j in jj]"
-        " for of in ('position', 'velocity', 'acceleration') for end in ('lower', 'upper')]",
-    ),
-    "accelerations_forced:MakeActuationMatrixPseudoinverse": Way(
-        "MakeActuationMatrixPseudoinverse",
-        f"{_PLANT}{_MOTORS}{_DONE}{_CONTEXT}{_PLACES}f = np.zeros(3)\nf[vs] = tau\n"
-        f"p.get_actuation_input_port().FixValue(c, p.MakeActuationMatrixPseudoinverse() @ f)\n{_ACCELERATION}",
-    ),
-    "power_of_damping": Way(
-        "CalcNonConservativePower",
-        f"{_X}{_MADE}{_STATE}for j, y in zip(jj, x): j.SetDamping(c, y)\nvalue = [p.CalcNonConservativePower(c)]",
-    ),
-    "damping_set:SetDampingVector": Way(
-        "Joint.SetDampingVector",
-        f"{_X}{_MADE}{_STATE}for j, y in zip(jj, x): j.SetDampingVector(c, [y])\n"
-        f"{_FORCES}p.CalcForceElementsContribution(c, f)\ng = p.CalcGravityGeneralizedForces(c)\n"
-        "value = (-p.CalcInverseDynamics(c, np.zeros(3), f) - g)[vs]",
-    ),
-    "damping_set:default": Way(
-        "PrismaticJoint.set_default_damping",
-        f"{_X}{_PLANT}for j, y in zip(jj, x): j.set_default_damping(y)\n{_DONE}{_CONTEXT}{_PLACES}{_STATE}"
-        f"{_FORCES}p.CalcForceElementsContribution(c, f)\ng = p.CalcGravityGeneralizedForces(c)\n"
-        "value = (-p.CalcInverseDynamics(c, np.zeros(3), f) - g)[vs]",
-    ),
-}
+} | ways_of(f"""
+== coordinates_set:GetDefaultPositions | GetDefaultPositions
+{_MADE}p.SetDefaultPositions(two, v[2:])
+p.SetDefaultPositions(one, v[:2])
+value = np.r_[p.GetDefaultPositions(one), p.GetDefaultPositions(two)]
+== speeds_set | SetVelocities of a model instance
+{_MADE}p.SetVelocities(c, two, a[2:])
+p.SetVelocities(c, one, a[:2])
+value = [j.get_translation_rate(c) for j in jj]
+== speeds_set:array | SetVelocitiesInArray
+{_MADE}x = np.zeros(3)
+p.SetVelocitiesInArray(one, a[:2], x)
+p.SetVelocitiesInArray(two, a[2:], x)
+p.SetVelocities(c, x)
+value = p.GetVelocities(c)[vs]
+== speeds_set:GetVelocitiesFromArray | GetVelocitiesFromArray
+{_MADE}{_STATE}x = p.GetVelocities(c)
+value = np.r_[p.GetVelocitiesFromArray(one, x), p.GetVelocitiesFromArray(two, x)]
+== coordinates_set:GetPositionsFromArray | GetPositionsFromArray
+{_MADE}{_STATE}x = p.GetPositions(c)
+value = np.r_[p.GetPositionsFromArray(one, x), p.GetPositionsFromArray(two, x)]
+== states_of_models | GetPositionsAndVelocities of a model instance
+{_MADE}{_STATE}value = np.r_[p.GetPositionsAndVelocities(c, one), p.GetPositionsAndVelocities(c, two)]
+== states_of_models:SetPositionsAndVelocities | SetPositionsAndVelocities of a model instance
+{_MADE}p.SetPositionsAndVelocities(c, two, [v[2], a[2]])
+p.SetPositionsAndVelocities(c, one, [*v[:2], *a[:2]])
+x = np.c_[[j.get_translation(c) for j in jj], [j.get_translation_rate(c) for j in jj]]
+value = [*x[:2, 0], *x[:2, 1], *x[2]]
+== states_of_models:port | get_state_output_port of a model instance
+{_MADE}{_STATE}value = np.r_[p.get_state_output_port(one).Eval(c), p.get_state_output_port(two).Eval(c)]
+== states_of_models:MakeStateSelectorMatrix | MakeStateSelectorMatrix
+{_MADE}{_STATE}x = p.MakeStateSelectorMatrix([j.index() for j in jj]) @ p.GetPositionsAndVelocities(c)
+value = [x[0], x[1], x[3], x[4], x[2], x[5]]
+== sums_of_models | CalcTotalMass, CalcCenterOfMassPositionInWorld of model instances
+{_MADE}{_STATE}of = p.CalcCenterOfMassPositionInWorld
+value = np.r_[p.CalcTotalMass(c), p.CalcTotalMass(c, [one]), p.CalcTotalMass(c, [two]), of(c), of(c, [one]), of(c, \
+[two]), p.CalcCenterOfMassTranslationalVelocityInWorld(c, [one])]
+== momenta_of_models | CalcSpatialMomentumInWorldAboutPoint of model instances
+{_MADE}{_STATE}L = p.CalcSpatialMomentumInWorldAboutPoint(c, [one], tau)
+value = [*L.translational(), *L.rotational()]
+== accelerations_forced | applied_generalized_force input port | {_MADE}{_FORCED}{_ACCELERATION}
+== accelerations_forced:AddInOneForce | Joint.AddInOneForce
+{_MADE}{_FORCES}for j, y in zip(jj, tau): j.AddInOneForce(c, 0, y, f)
+p.CalcForceElementsContribution(c, g := drake.MultibodyForces(p))
+f.AddInForces(g)
+value = np.linalg.solve(p.CalcMassMatrix(c), -p.CalcInverseDynamics(c, np.zeros(3), f))[vs]
+== accelerations_forced:actuation | get_actuation_input_port of a model instance
+{_PLANT}{_MOTORS}{_DONE}{_CONTEXT}{_PLACES}x = np.zeros(3)
+x[[m.input_start() for m in (mx, my, mz)]] = tau
+for i in (one, two): p.get_actuation_input_port(i).FixValue(c, p.GetActuationFromArray(i, x))
+{_ACCELERATION}
+== accelerations_forced:SetActuationInArray | SetActuationInArray, MakeActuationMatrix
+{_PLANT}{_MOTORS}{_DONE}{_CONTEXT}{_PLACES}x = np.zeros(3)
+p.SetActuationInArray(two, tau[2:], x)
+p.SetActuationInArray(one, tau[1::-1], x)
+p.get_applied_generalized_force_input_port().FixValue(c, p.MakeActuationMatrix() @ x)
+{_ACCELERATION}
+== accelerations_forced:MakeActuatorSelectorMatrix | MakeActuatorSelectorMatrix
+{_PLANT}{_MOTORS}{_DONE}{_CONTEXT}{_PLACES}x = p.MakeActuatorSelectorMatrix([m.index() for m in (mx, my, mz)]) @ tau
+p.get_actuation_input_port().FixValue(c, x)
+{_ACCELERATION}
+== accelerations_forced:set_actuation_vector | JointActuator.set_actuation_vector
+{_PLANT}{_MOTORS}{_DONE}{_CONTEXT}{_PLACES}x = np.zeros(3)
+for m, y in zip((mx, my, mz), tau): m.set_actuation_vector([y], x)
+p.get_actuation_input_port().FixValue(c, x)
+{_ACCELERATION}
+== masses_set | RigidBody.SetMass
+{_X}{_MADE}for b, y in zip((bx, by, bz), x): b.SetMass(c, y)
+value = p.CalcMassMatrix(c)[np.ix_(vs, vs)]
+== masses_set:SetSpatialInertiaInBodyFrame | RigidBody.SetSpatialInertiaInBodyFrame
+{_X}{_MADE}for b, y in zip((bx, by, bz), x): b.SetSpatialInertiaInBodyFrame(c, {_INERTIA})
+value = p.CalcMassMatrix(c)[np.ix_(vs, vs)]
+== masses_set:AutoDiffXd | RigidBody.SetMass, ToAutoDiffXd
+{_X}{_MADE}for b, y in zip((bx, by, bz), x): b.SetMass(c, y)
+ad = p.ToAutoDiffXd()
+d = ad.CreateDefaultContext()
+d.SetTimeStateAndParametersFrom(c)
+value = np.array([[y.value() for y in row] for row in ad.CalcMassMatrix(d)])[np.ix_(vs, vs)]
+== damping_set | PrismaticJoint.SetDamping, AddInDamping
+{_X}{_MADE}{_STATE}for j, y in zip(jj, x): j.SetDamping(c, y)
+{_FORCES}for j in jj: j.AddInDamping(c, f)
+value = f.generalized_forces()[vs]
+== limits_set | Joint.set_position_limits, set_velocity_limits, set_acceleration_limits
+{_X}{_PLANT}{_LIMITS}{_DONE}{_CONTEXT}{_PLACES}{_TOLD}
+== limits_set:after Finalize | Joint.set_position_limits after Finalize | {_X}{_MADE}{_LIMITS}{_TOLD}
+== limits_set:Clone | Joint.set_position_limits, Clone | {_X}{_PLANT}{_LIMITS}{_DONE}{_PLACES}p = p.Clone()\n{_TOLD}
+== limits_set:joint | Joint.position_lower_limits, velocity_upper_limits, acceleration_lower_limits
+{_X}{_MADE}{_LIMITS}value = [[getattr(j, f'{{of}}_{{end}}_limits')()[0] for j in jj] for of in ('position', \
+'velocity', 'acceleration') for end in ('lower', 'upper')]
+== accelerations_forced:MakeActuationMatrixPseudoinverse | MakeActuationMatrixPseudoinverse
+{_PLANT}{_MOTORS}{_DONE}{_CONTEXT}{_PLACES}f = np.zeros(3)
+f[vs] = tau
+p.get_actuation_input_port().FixValue(c, p.MakeActuationMatrixPseudoinverse() @ f)
+{_ACCELERATION}
+== power_of_damping | CalcNonConservativePower
+{_X}{_MADE}{_STATE}for j, y in zip(jj, x): j.SetDamping(c, y)
+value = [p.CalcNonConservativePower(c)]
+== damping_set:SetDampingVector | Joint.SetDampingVector
+{_X}{_MADE}{_STATE}for j, y in zip(jj, x): j.SetDampingVector(c, [y])
+{_FORCES}p.CalcForceElementsContribution(c, f)
+g = p.CalcGravityGeneralizedForces(c)
+value = (-p.CalcInverseDynamics(c, np.zeros(3), f) - g)[vs]
+== damping_set:default | PrismaticJoint.set_default_damping
+{_X}{_PLANT}for j, y in zip(jj, x): j.set_default_damping(y)
+{_DONE}{_CONTEXT}{_PLACES}{_STATE}{_FORCES}p.CalcForceElementsContribution(c, f)
+g = p.CalcGravityGeneralizedForces(c)
+value = (-p.CalcInverseDynamics(c, np.zeros(3), f) - g)[vs]
+""")
 _SPRING = f"""{_X}p = drake.MultibodyPlant(0.0)
 p.mutable_gravity_field().set_gravity_vector([0.0, 0.0, 0.0])
 b = p.AddRigidBody('b', {_UNIT})
@@ -328,40 +287,37 @@ _PUSHED = (
     "p.get_applied_generalized_force_input_port().FixValue(c, f)\n"
 )
 _OF_TWO = "value = [*(j.get_translation(c) for j in (jx, jz)), *(j.get_translation_rate(c) for j in (jx, jz))]"
-WAYS |= {
-    "step_of_locked": Way("Joint.Lock", f"{_DISCRETE}{_LOCK}jy.Lock(c)\n{_STEPPED}{_BOTH}"),
-    "step_of_locked:sap": Way("Joint.Lock, SAP", f"{_DISCRETE}{_SAP}{_LOCK}jy.Lock(c)\n{_STEPPED}{_BOTH}"),
-    "step_of_unlocked": Way("Joint.Unlock", f"{_DISCRETE}{_LOCK}jx.Lock(c)\njx.Unlock(c)\n{_STATE}{_STEPPED}{_BOTH}"),
-    "step_of_unlocked:RigidBody": Way(
-        "RigidBody.Unlock, SAP", f"{_DISCRETE}{_SAP}{_LOCK}jy.Lock(c)\njy.Unlock(c)\n{_STATE}{_STEPPED}{_BOTH}"
-    ),
-    "step_of_held_distance": Way(
-        "AddDistanceConstraint", f"{_ONE_LINE}{_BETWEEN}\n{_DONE}{_RUN}{_ON_X}{_PUSHED}{_STEPPED}{_OF_TWO}"
-    ),
-    "step_of_held_distance:SetDistanceConstraintParams": Way(
-        "SetDistanceConstraintParams",
-        f"{_ONE_LINE}k = p.AddDistanceConstraint(bx, np.zeros(3), bz, np.zeros(3), 7.0, 5.0, 3.0)\n"
-        f"{_DONE}{_RUN}o = p.GetDistanceConstraintParams(c, k)\n"
-        "p.SetDistanceConstraintParams(c, k, drake.DistanceConstraintParams("
-        f"o.bodyA(), o.p_AP(), o.bodyB(), o.p_BQ(), {REST}, {STIFFNESS}, {DAMPING}))\n"
-        f"{_ON_X}{_PUSHED}{_STEPPED}{_OF_TWO}",
-    ),
-    "step_of_freed_distance": Way(
-        "SetConstraintActiveStatus",
-        f"{_ONE_LINE}k = {_BETWEEN}\n{_DONE}{_RUN}p.SetConstraintActiveStatus(c, k, False)\n"
-        f"{_ON_X}{_PUSHED}{_STEPPED}{_OF_TWO}",
-    ),
-    "step_of_freed_distance:RemoveConstraint": Way(
-        "RemoveConstraint",
-        f"{_ONE_LINE}k = {_BETWEEN}\np.RemoveConstraint(k)\n{_DONE}{_RUN}{_ON_X}{_PUSHED}{_STEPPED}{_OF_TWO}",
-    ),
-    # SAP's solver in the near-rigid regime, as for `step_bound`.
-    "step_of_coupled": Way(
-        "AddCouplerConstraint",
-        f"{_X_ALONE}p.AddCouplerConstraint(jx, jz, {COUPLED[0]}, {COUPLED[1]})\n{_DONE}{_RUN}"
-        f"jz.set_translation(c, v[2])\njx.set_translation(c, {COUPLED[0]} * v[2] + {COUPLED[1]})\n"
-        f"jz.set_translation_rate(c, a[2])\njx.set_translation_rate(c, {COUPLED[0]} * a[2])\n"
-        f"{_PUSHED}{_STEPPED}value = [jx.get_translation_rate(c), jz.get_translation_rate(c)]",
-        1e-3,
-    ),
-}
+WAYS |= ways_of(f"""
+== step_of_locked | Joint.Lock | {_DISCRETE}{_LOCK}jy.Lock(c)\n{_STEPPED}{_BOTH}
+== step_of_locked:sap | Joint.Lock, SAP | {_DISCRETE}{_SAP}{_LOCK}jy.Lock(c)\n{_STEPPED}{_BOTH}
+== step_of_unlocked | Joint.Unlock | {_DISCRETE}{_LOCK}jx.Lock(c)\njx.Unlock(c)\n{_STATE}{_STEPPED}{_BOTH}
+== step_of_unlocked:RigidBody | RigidBody.Unlock, SAP
+{_DISCRETE}{_SAP}{_LOCK}jy.Lock(c)
+jy.Unlock(c)
+{_STATE}{_STEPPED}{_BOTH}
+== step_of_held_distance | AddDistanceConstraint
+{_ONE_LINE}{_BETWEEN}
+{_DONE}{_RUN}{_ON_X}{_PUSHED}{_STEPPED}{_OF_TWO}
+== step_of_held_distance:SetDistanceConstraintParams | SetDistanceConstraintParams
+{_ONE_LINE}k = p.AddDistanceConstraint(bx, np.zeros(3), bz, np.zeros(3), 7.0, 5.0, 3.0)
+{_DONE}{_RUN}o = p.GetDistanceConstraintParams(c, k)
+p.SetDistanceConstraintParams(c, k, drake.DistanceConstraintParams(o.bodyA(), o.p_AP(), o.bodyB(), o.p_BQ(), {REST}, \
+{STIFFNESS}, {DAMPING}))
+{_ON_X}{_PUSHED}{_STEPPED}{_OF_TWO}
+== step_of_freed_distance | SetConstraintActiveStatus
+{_ONE_LINE}k = {_BETWEEN}
+{_DONE}{_RUN}p.SetConstraintActiveStatus(c, k, False)
+{_ON_X}{_PUSHED}{_STEPPED}{_OF_TWO}
+== step_of_freed_distance:RemoveConstraint | RemoveConstraint
+{_ONE_LINE}k = {_BETWEEN}
+p.RemoveConstraint(k)
+{_DONE}{_RUN}{_ON_X}{_PUSHED}{_STEPPED}{_OF_TWO}
+== # SAP's solver in the near-rigid regime, as for `step_bound`.
+== step_of_coupled ~ 0.001 | AddCouplerConstraint
+{_X_ALONE}p.AddCouplerConstraint(jx, jz, {COUPLED[0]}, {COUPLED[1]})
+{_DONE}{_RUN}jz.set_translation(c, v[2])
+jx.set_translation(c, {COUPLED[0]} * v[2] + {COUPLED[1]})
+jz.set_translation_rate(c, a[2])
+jx.set_translation_rate(c, {COUPLED[0]} * a[2])
+{_PUSHED}{_STEPPED}value = [jx.get_translation_rate(c), jz.get_translation_rate(c)]
+""")

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...interface import STEP
 from ...truth.features.systems import GAINS, INTEGRATORS, PENDULUM, PERIOD
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 
 _F = "def f(x): return x / (1 + np.abs(x))\n"
 _A = f"{_F}A = np.array([f(v), f(a), f(v2)]) - 2 * np.eye(3)\nO = np.zeros((0, 0))\n"
@@ -100,97 +100,71 @@ WAYS |= {
         )
         + "value = s.get_output_port_actuation().Eval(e)",
     ),
-    "regulator": Way(
-        "LinearQuadraticRegulator",
-        f"{_X}K, S = drake.LinearQuadraticRegulator({_INTEGRATOR}, "
-        "np.diag(x[:2]), [[x[2]]])\nvalue = [*K.flat, *S.flat]",
-        1e-9,
-    ),
-    "regulator:ContinuousAlgebraicRiccatiEquation": Way(
-        "ContinuousAlgebraicRiccatiEquation",
-        f"{_X}A, B = {_INTEGRATOR}\nS = drake.ContinuousAlgebraicRiccatiEquation(A, B, np.diag(x[:2]), [[x[2]]])\n"
-        "value = [*(B.T @ S / x[2]).flat, *S.flat]",
-        1e-9,
-    ),
-    "regulator_discrete": Way(
-        "DiscreteTimeLinearQuadraticRegulator",
-        f"{_X}K, S = drake.DiscreteTimeLinearQuadraticRegulator(*(np.array([[y]]) for y in (*x, 1.0)))\n"
-        "value = [*K.flat, *S.flat]",
-        1e-9,
-    ),
-    "regulator_discrete:DiscreteAlgebraicRiccatiEquation": Way(
-        "DiscreteAlgebraicRiccatiEquation",
-        f"{_X}S = drake.DiscreteAlgebraicRiccatiEquation(*(np.array([[y]]) for y in (*x, 1.0)))\n"
-        "value = [x[0] * x[1] * S[0, 0] / (1 + x[1] ** 2 * S[0, 0]), S[0, 0]]",
-        1e-9,
-    ),
-    "lyapunov": Way(
-        "RealContinuousLyapunovEquation",
-        f"{_SOLVED}Q = -(A.T @ X + X @ A)\nvalue = drake.RealContinuousLyapunovEquation(A, (Q + Q.T) / 2)",
-        1e-9,
-    ),
-    "lyapunov:RealDiscreteLyapunovEquation": Way(
-        "RealDiscreteLyapunovEquation",
-        f"{_SOLVED}A = A / 8\nQ = X - A.T @ X @ A\nvalue = drake.RealDiscreteLyapunovEquation(A, (Q + Q.T) / 2)",
-        1e-9,
-    ),
-    "controllability": Way(
-        "ControllabilityMatrix",
-        f"{_A}value = drake.ControllabilityMatrix(drake.LinearSystem(A, f(v)[:, None], np.eye(3), np.zeros((3, 1))))",
-    ),
-    "controllability:ObservabilityMatrix": Way(
-        "ObservabilityMatrix",
-        f"{_A}value = drake.ObservabilityMatrix(drake.LinearSystem(A.T, "
-        "np.zeros((3, 1)), f(v)[None], np.zeros((1, 1)))).T",
-    ),
-    "controlled_by_gains": Way(
-        "PidController",
-        f"s = drake.PidController({_KP}, {_KI}, {_KD})\nc = s.CreateDefaultContext()\nc.SetContinuousState(tau)\n"
-        "s.get_input_port_estimated_state().FixValue(c, np.r_[v, tau])\n"
-        "s.get_input_port_desired_state().FixValue(c, np.r_[a, v2])\nvalue = s.get_output_port_control().Eval(c)",
-    ),
-    "filtered_rate": Way(
-        "FirstOrderLowPassFilter",
-        f"s = drake.FirstOrderLowPassFilter({GAINS[2]}, 3)\nc = s.CreateDefaultContext()\n"
-        "s.set_initial_output_value(c, tau)\ns.get_input_port().FixValue(c, v)\n"
-        "value = s.EvalTimeDerivatives(c).CopyToVector()",
-    ),
-    "waves": Way(
-        "Sine",
-        f"{_F}s = drake.Sine(2.0, 3.0, 0.5, 1, False)\nc = s.CreateDefaultContext()\n"
-        "s.get_input_port(0).FixValue(c, f(v)[:1])\nvalue = [s.get_output_port(k).Eval(c)[0] for k in range(3)]",
-    ),
-    "velocity_composed": Way(
-        "SpatialVelocity.ComposeWithMovingFrameVelocity",
-        f"{_F}{_TWISTS}T = V.ComposeWithMovingFrameVelocity(f(tau), U)\n{_LISTED}",
-    ),
-    "velocity_composed:Shift": Way("SpatialVelocity.Shift, +", f"{_F}{_TWISTS}T = V.Shift(f(tau)) + U\n{_LISTED}"),
-    "acceleration_composed": Way(
-        "SpatialAcceleration.ComposeWithMovingFrameAcceleration",
-        f"{_F}{_TWISTS}{_RATES}T = B.ComposeWithMovingFrameAcceleration(f(tau), a, U, D)\n{_LISTED}",
-    ),
-    "acceleration_shifted": Way(
-        "SpatialAcceleration.Shift",
-        f"{_F}T = drake.SpatialAcceleration(alpha=a, a=v).Shift(f(tau), v2)\n{_LISTED}",
-    ),
-    "power_of_wrench": Way(
-        "SpatialForce.dot", "value = [drake.SpatialForce(tau=v2, f=tau).dot(drake.SpatialVelocity(w=a, v=v))]"
-    ),
-    "power_of_wrench:SpatialVelocity": Way(
-        "SpatialVelocity.dot", "value = [drake.SpatialVelocity(w=a, v=v).dot(drake.SpatialForce(tau=v2, f=tau))]"
-    ),
-    "power_of_wrench:SpatialMomentum": Way(
-        "SpatialMomentum.dot", "value = [drake.SpatialMomentum(h=v2, l=tau).dot(drake.SpatialVelocity(w=a, v=v))]"
-    ),
-    "nearest_quaternion": Way(
-        "ClosestQuaternion, QuaternionToCanonicalForm",
-        "import pydrake.math as dm\nx, y = drake.Quaternion(q), drake.Quaternion(q2)\n"
-        "value = np.r_[dm.ClosestQuaternion(y, x).wxyz(), dm.QuaternionToCanonicalForm(x).wxyz()]",
-    ),
-    "turns_about_axes": Way(
-        "RotationMatrix.MakeXRotation, MakeYRotation, MakeZRotation",
-        f"{_F}x, y, z = f(v)\nT = drake.RotationMatrix\n"
-        "R = T.MakeXRotation(x) @ T.MakeYRotation(y) @ T.MakeZRotation(z)\n"
-        "value = (R @ T(drake.Quaternion(q))).matrix().ravel()",
-    ),
-}
+} | ways_of(f"""
+== regulator ~ 1e-09 | LinearQuadraticRegulator
+{_X}K, S = drake.LinearQuadraticRegulator({_INTEGRATOR}, np.diag(x[:2]), [[x[2]]])
+value = [*K.flat, *S.flat]
+== regulator:ContinuousAlgebraicRiccatiEquation ~ 1e-09 | ContinuousAlgebraicRiccatiEquation
+{_X}A, B = {_INTEGRATOR}
+S = drake.ContinuousAlgebraicRiccatiEquation(A, B, np.diag(x[:2]), [[x[2]]])
+value = [*(B.T @ S / x[2]).flat, *S.flat]
+== regulator_discrete ~ 1e-09 | DiscreteTimeLinearQuadraticRegulator
+{_X}K, S = drake.DiscreteTimeLinearQuadraticRegulator(*(np.array([[y]]) for y in (*x, 1.0)))
+value = [*K.flat, *S.flat]
+== regulator_discrete:DiscreteAlgebraicRiccatiEquation ~ 1e-09 | DiscreteAlgebraicRiccatiEquation
+{_X}S = drake.DiscreteAlgebraicRiccatiEquation(*(np.array([[y]]) for y in (*x, 1.0)))
+value = [x[0] * x[1] * S[0, 0] / (1 + x[1] ** 2 * S[0, 0]), S[0, 0]]
+== lyapunov ~ 1e-09 | RealContinuousLyapunovEquation
+{_SOLVED}Q = -(A.T @ X + X @ A)
+value = drake.RealContinuousLyapunovEquation(A, (Q + Q.T) / 2)
+== lyapunov:RealDiscreteLyapunovEquation ~ 1e-09 | RealDiscreteLyapunovEquation
+{_SOLVED}A = A / 8
+Q = X - A.T @ X @ A
+value = drake.RealDiscreteLyapunovEquation(A, (Q + Q.T) / 2)
+== controllability | ControllabilityMatrix
+{_A}value = drake.ControllabilityMatrix(drake.LinearSystem(A, f(v)[:, None], np.eye(3), np.zeros((3, 1))))
+== controllability:ObservabilityMatrix | ObservabilityMatrix
+{_A}value = drake.ObservabilityMatrix(drake.LinearSystem(A.T, np.zeros((3, 1)), f(v)[None], np.zeros((1, 1)))).T
+== controlled_by_gains | PidController
+s = drake.PidController({_KP}, {_KI}, {_KD})
+c = s.CreateDefaultContext()
+c.SetContinuousState(tau)
+s.get_input_port_estimated_state().FixValue(c, np.r_[v, tau])
+s.get_input_port_desired_state().FixValue(c, np.r_[a, v2])
+value = s.get_output_port_control().Eval(c)
+== filtered_rate | FirstOrderLowPassFilter
+s = drake.FirstOrderLowPassFilter({GAINS[2]}, 3)
+c = s.CreateDefaultContext()
+s.set_initial_output_value(c, tau)
+s.get_input_port().FixValue(c, v)
+value = s.EvalTimeDerivatives(c).CopyToVector()
+== waves | Sine
+{_F}s = drake.Sine(2.0, 3.0, 0.5, 1, False)
+c = s.CreateDefaultContext()
+s.get_input_port(0).FixValue(c, f(v)[:1])
+value = [s.get_output_port(k).Eval(c)[0] for k in range(3)]
+== velocity_composed | SpatialVelocity.ComposeWithMovingFrameVelocity
+{_F}{_TWISTS}T = V.ComposeWithMovingFrameVelocity(f(tau), U)
+{_LISTED}
+== velocity_composed:Shift | SpatialVelocity.Shift, + | {_F}{_TWISTS}T = V.Shift(f(tau)) + U\n{_LISTED}
+== acceleration_composed | SpatialAcceleration.ComposeWithMovingFrameAcceleration
+{_F}{_TWISTS}{_RATES}T = B.ComposeWithMovingFrameAcceleration(f(tau), a, U, D)
+{_LISTED}
+== acceleration_shifted | SpatialAcceleration.Shift
+{_F}T = drake.SpatialAcceleration(alpha=a, a=v).Shift(f(tau), v2)
+{_LISTED}
+== power_of_wrench | SpatialForce.dot | value = [drake.SpatialForce(tau=v2, f=tau).dot(drake.SpatialVelocity(w=a, v=v))]
+== power_of_wrench:SpatialVelocity | SpatialVelocity.dot
+value = [drake.SpatialVelocity(w=a, v=v).dot(drake.SpatialForce(tau=v2, f=tau))]
+== power_of_wrench:SpatialMomentum | SpatialMomentum.dot
+value = [drake.SpatialMomentum(h=v2, l=tau).dot(drake.SpatialVelocity(w=a, v=v))]
+== nearest_quaternion | ClosestQuaternion, QuaternionToCanonicalForm
+import pydrake.math as dm
+x, y = drake.Quaternion(q), drake.Quaternion(q2)
+value = np.r_[dm.ClosestQuaternion(y, x).wxyz(), dm.QuaternionToCanonicalForm(x).wxyz()]
+== turns_about_axes | RotationMatrix.MakeXRotation, MakeYRotation, MakeZRotation
+{_F}x, y, z = f(v)
+T = drake.RotationMatrix
+R = T.MakeXRotation(x) @ T.MakeYRotation(y) @ T.MakeZRotation(z)
+value = (R @ T(drake.Quaternion(q))).matrix().ravel()
+""")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 
 from ..writing import copies
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 
 _STATE = "state(q, v)\n"
 # Of the base's speeds along the world's axes at its origin: those of a representation. Where it stands still it is cut.
@@ -126,144 +126,113 @@ def again(first: Mapping[str, Way]) -> dict[str, Way]:
 WAYS = (
     _represented("local", _BODY)
     | _represented("world", _WORLD)
-    | {
-        "shape_poses": Way(
-            "collisionSolidShapes, getLink_H_geometry",
-            f"{_STATE}value, shapes = [], robot.model().collisionSolidShapes().getLinkSolidShapes()\n"
-            "for name in links:\n"
-            "    at = robot.getWorldTransform(name)\n    for shape in shapes[robot.model().getLinkIndex(name)]:\n"
-            "        H = (at * shape.getLink_H_geometry()).asHomogeneousTransform().toNumPy()\n"
-            "        value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))",
-        ),
-        "frames_beside_links": Way(
-            "setParsingOptions, addSensorFramesAsAdditionalFrames, getNrOfFrames",
-            "value = [robot.model().getNrOfFrames() - robot.model().getNrOfLinks()]",
-        ),
-        "frame_poses": Way(
-            "getWorldTransform",
-            f"{_STATE}value = []\nfor k in sensed:\n"
-            "    H = robot.getWorldTransform(f'o{k}').asHomogeneousTransform().toNumPy()\n"
-            "    value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))",
-        ),
-        "frame_velocities": Way(
-            "getFrameVel", f"{_STATE}value = [robot.getFrameVel(f'o{{k}}').toNumPy() for k in sensed]"
-        ),
-        "frame_accelerations": Way(
-            "getFrameAcc", f"{_STATE}value = [robot.getFrameAcc(f'o{{k}}', *rates(a)).toNumPy() for k in sensed]"
-        ),
-        "frame_velocity_products": Way(
-            "getFrameBiasAcc", f"{_STATE}value = [robot.getFrameBiasAcc(f'o{{k}}').toNumPy() for k in sensed]"
-        ),
-        "frame_jacobians": Way(
-            "getFrameFreeFloatingJacobian",
-            f"{_STATE}J, value = iDynTree.MatrixDynSize(6, n), []\nfor k in sensed:\n"
-            "    assert robot.getFrameFreeFloatingJacobian(f'o{k}', J)\n    value.append(J.toNumPy()[:, cut:].copy())",
-        ),
-        **{
-            name: Way(
-                native,
-                "own = [robot.model().getJoint(k) for k in range(robot.model().getNrOfJoints())]\n"
-                f"value = [one.{native}(0) for one in own if one.getNrOfDOFs()]",
-            )
-            for name, native in {
-                "joint_dampings": "getDamping",
-                "joint_frictions": "getStaticFriction",
-                "joint_speed_limits": "getVelocityLimit",
-                "joint_force_limits": "getEffortLimit",
-            }.items()
-        },
-        "total_mass": Way("getTotalMass", "value = [robot.model().getTotalMass()]"),
-        "link_poses:getWorldTransformsAsHomogeneous": Way(
-            "getWorldTransformsAsHomogeneous",
-            f"{_STATE}made = robot.getWorldTransformsAsHomogeneous(iDynTree.StringVector(links))\n"
-            "value = [np.r_[one.toNumPy()[:3, 3], one.toNumPy()[:3, :3].ravel()] for one in made]",
-        ),
-        "centroidal_inertia": Way(
-            "getCentroidalRobotLockedInertia",
-            f"{_STATE}value = robot.getCentroidalRobotLockedInertia().asMatrix().toNumPy()",
-        ),
-        "centroidal_inertia:getRobotLockedInertia": Way(
-            "getRobotLockedInertia",
-            f"{_STATE}{_AT_CENTRE}value = B @ robot.getRobotLockedInertia().asMatrix().toNumPy() @ B.T",
-        ),
-        "centroidal_momentum:getLinearAngularMomentum": Way(
-            "getLinearAngularMomentum",
-            f"{_STATE}{_AT_CENTRE}value = B @ robot.getLinearAngularMomentum().asVector().toNumPy()",
-        ),
-        "centroidal_matrix:getLinearAngularMomentumJacobian": Way(
-            "getLinearAngularMomentumJacobian",
-            f"{_STATE}{_AT_CENTRE}J = iDynTree.MatrixDynSize(6, n)\n"
-            "assert robot.getLinearAngularMomentumJacobian(J)\nvalue = (B @ J.toNumPy())[:, cut:]",
-        ),
-        "centroidal_momentum:getAverageVelocity": Way(
-            "getAverageVelocity, getRobotLockedInertia",
-            f"{_STATE}{_AT_CENTRE}value = B @ robot.getRobotLockedInertia().asMatrix().toNumPy()"
-            " @ robot.getAverageVelocity().asVector().toNumPy()",
-        ),
-        "centroidal_matrix:getAverageVelocityJacobian": Way(
-            "getAverageVelocityJacobian, getRobotLockedInertia",
-            f"{_STATE}{_AT_CENTRE}J = iDynTree.MatrixDynSize(6, n)\nassert robot.getAverageVelocityJacobian(J)\n"
-            "value = (B @ robot.getRobotLockedInertia().asMatrix().toNumPy() @ J.toNumPy())[:, cut:]",
-        ),
-        "relative_jacobians": Way(
-            "getRelativeJacobian",
-            f"{_STATE}{_RELATIVE}    assert robot.getRelativeJacobian(first, robot.getFrameIndex(name), J)\n"
-            "    value.append(np.hstack([np.zeros((6, 6)), J.toNumPy()])[:, cut:])",
-        ),
-        "relative_poses:getRelativeTransformExplicit": Way(
-            "getRelativeTransformExplicit",
-            f"{_STATE}value = []\nfor name in links:\n    i, j = map(robot.getFrameIndex, (links[0], name))\n"
-            "    H = robot.getRelativeTransformExplicit(i, i, j, j).asHomogeneousTransform().toNumPy()\n"
-            "    value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))",
-        ),
-        "mass_matrix:getCoriolisAndMassMatrices": Way(
-            "getCoriolisAndMassMatrices",
-            f"{_STATE}C, M, M_rate = (iDynTree.MatrixDynSize(n, n) for _ in range(3))\n"
-            "assert robot.getCoriolisAndMassMatrices(C, M, M_rate)\nvalue = M.toNumPy()[cut:, cut:]",
-        ),
-        "coriolis_symmetry:rate of M": Way(
-            "getCoriolisAndMassMatrices",
-            f"{_STATE}C, M, M_rate = (iDynTree.MatrixDynSize(n, n) for _ in range(3))\n"
-            "assert robot.getCoriolisAndMassMatrices(C, M, M_rate)\nvalue = M_rate.toNumPy()[cut:, cut:]",
-        ),
-        "coriolis_symmetry": Way(
-            "getCoriolisAndMassMatrices",
-            f"{_STATE}C, M, M_rate = (iDynTree.MatrixDynSize(n, n) for _ in range(3))\n"
-            "assert robot.getCoriolisAndMassMatrices(C, M, M_rate)\n"
-            "value = (C.toNumPy() + C.toNumPy().T)[cut:, cut:]",
-        ),
-        "link_poses:ForwardPosVelAccKinematics": Way(
-            "ForwardPosVelAccKinematics",
-            f"{_RAW}value = []\nfor k in ks:\n    H = at(k).asHomogeneousTransform().toNumPy()\n"
-            "    value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))",
-        ),
-        "velocity_local:ForwardPosVelAccKinematics": Way(
-            "ForwardPosVelAccKinematics", f"{_RAW}value = [moving(k).toNumPy() for k in ks]"
-        ),
-        "acceleration_local": Way("ForwardPosVelAccKinematics", f"{_RAW}value = [{_LINK_ACCELERATION} for k in ks]"),
-        "mass_matrix:CompositeRigidBodyAlgorithm": Way(
-            "CompositeRigidBodyAlgorithm",
-            f"{_RAW}carried, M = iDynTree.LinkInertias(model), iDynTree.FreeFloatingMassMatrix(model)\n"
-            "assert iDynTree.CompositeRigidBodyAlgorithm(model, traversal, pos.jointPos, carried, M)\n"
-            "x = robot.getWorldBaseTransform().asHomogeneousTransform().toNumPy()[:3, 3]\n"
-            "T, arm = np.eye(n), H.asHomogeneousTransform().toNumPy()[:3, 3] - x\n"
-            "T[:3, :3], T[:3, 3:6], T[3:6, 3:6] = R.T, -R.T @ np.cross(np.eye(3), arm), R.T\n"
-            "value = (T.T @ M.toNumPy() @ T)[cut:, cut:]",
-        ),
-        "accelerometers": Way(
-            "AccelerometerSensor.predictMeasurement",
-            _RAW + _PROPER + _SENSOR.replace("KIND", "AccelerometerSensor").replace("READING", "proper(k), moving(k)"),
-        ),
-        "gyroscopes": Way(
-            "GyroscopeSensor.predictMeasurement",
-            _RAW + _SENSOR.replace("KIND", "GyroscopeSensor").replace("READING", "moving(k)"),
-        ),
-        "angular_accelerations": Way(
-            "ThreeAxisAngularAccelerometerSensor.predictMeasurement",
-            _RAW
-            + _SENSOR.replace("KIND", "ThreeAxisAngularAccelerometerSensor").replace("READING", "changing(k)")
-            + "value = [(robot.getWorldTransform(f'o{frame}').getRotation().toNumPy() @ one)"
-            " for frame, one in zip(sensed, value)]",
-        ),
-    }
+    | (
+        ways_of(f"""
+== shape_poses | collisionSolidShapes, getLink_H_geometry
+{_STATE}value, shapes = [], robot.model().collisionSolidShapes().getLinkSolidShapes()
+for name in links:
+    at = robot.getWorldTransform(name)
+    for shape in shapes[robot.model().getLinkIndex(name)]:
+        H = (at * shape.getLink_H_geometry()).asHomogeneousTransform().toNumPy()
+        value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))
+== frames_beside_links | setParsingOptions, addSensorFramesAsAdditionalFrames, getNrOfFrames
+value = [robot.model().getNrOfFrames() - robot.model().getNrOfLinks()]
+== frame_poses | getWorldTransform
+{_STATE}value = []
+for k in sensed:
+    H = robot.getWorldTransform(f'o{{k}}').asHomogeneousTransform().toNumPy()
+    value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))
+== frame_velocities | getFrameVel | {_STATE}value = [robot.getFrameVel(f'o{{k}}').toNumPy() for k in sensed]
+== frame_accelerations | getFrameAcc
+{_STATE}value = [robot.getFrameAcc(f'o{{k}}', *rates(a)).toNumPy() for k in sensed]
+== frame_velocity_products | getFrameBiasAcc
+{_STATE}value = [robot.getFrameBiasAcc(f'o{{k}}').toNumPy() for k in sensed]
+== frame_jacobians | getFrameFreeFloatingJacobian
+{_STATE}J, value = iDynTree.MatrixDynSize(6, n), []
+for k in sensed:
+    assert robot.getFrameFreeFloatingJacobian(f'o{{k}}', J)
+    value.append(J.toNumPy()[:, cut:].copy())
+""")
+        | {
+            **{
+                name: Way(
+                    native,
+                    "own = [robot.model().getJoint(k) for k in range(robot.model().getNrOfJoints())]\n"
+                    f"value = [one.{native}(0) for one in own if one.getNrOfDOFs()]",
+                )
+                for name, native in {
+                    "joint_dampings": "getDamping",
+                    "joint_frictions": "getStaticFriction",
+                    "joint_speed_limits": "getVelocityLimit",
+                    "joint_force_limits": "getEffortLimit",
+                }.items()
+            },
+        }
+        | ways_of(f"""
+== total_mass | getTotalMass | value = [robot.model().getTotalMass()]
+== link_poses:getWorldTransformsAsHomogeneous | getWorldTransformsAsHomogeneous
+{_STATE}made = robot.getWorldTransformsAsHomogeneous(iDynTree.StringVector(links))
+value = [np.r_[one.toNumPy()[:3, 3], one.toNumPy()[:3, :3].ravel()] for one in made]
+== centroidal_inertia | getCentroidalRobotLockedInertia
+{_STATE}value = robot.getCentroidalRobotLockedInertia().asMatrix().toNumPy()
+== centroidal_inertia:getRobotLockedInertia | getRobotLockedInertia
+{_STATE}{_AT_CENTRE}value = B @ robot.getRobotLockedInertia().asMatrix().toNumPy() @ B.T
+== centroidal_momentum:getLinearAngularMomentum | getLinearAngularMomentum
+{_STATE}{_AT_CENTRE}value = B @ robot.getLinearAngularMomentum().asVector().toNumPy()
+== centroidal_matrix:getLinearAngularMomentumJacobian | getLinearAngularMomentumJacobian
+{_STATE}{_AT_CENTRE}J = iDynTree.MatrixDynSize(6, n)
+assert robot.getLinearAngularMomentumJacobian(J)
+value = (B @ J.toNumPy())[:, cut:]
+== centroidal_momentum:getAverageVelocity | getAverageVelocity, getRobotLockedInertia
+{_STATE}{_AT_CENTRE}value = B @ robot.getRobotLockedInertia().asMatrix().toNumPy() @ \
+robot.getAverageVelocity().asVector().toNumPy()
+== centroidal_matrix:getAverageVelocityJacobian | getAverageVelocityJacobian, getRobotLockedInertia
+{_STATE}{_AT_CENTRE}J = iDynTree.MatrixDynSize(6, n)
+assert robot.getAverageVelocityJacobian(J)
+value = (B @ robot.getRobotLockedInertia().asMatrix().toNumPy() @ J.toNumPy())[:, cut:]
+== relative_jacobians | getRelativeJacobian
+{_STATE}{_RELATIVE}    assert robot.getRelativeJacobian(first, robot.getFrameIndex(name), J)
+    value.append(np.hstack([np.zeros((6, 6)), J.toNumPy()])[:, cut:])
+== relative_poses:getRelativeTransformExplicit | getRelativeTransformExplicit
+{_STATE}value = []
+for name in links:
+    i, j = map(robot.getFrameIndex, (links[0], name))
+    H = robot.getRelativeTransformExplicit(i, i, j, j).asHomogeneousTransform().toNumPy()
+    value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))
+== mass_matrix:getCoriolisAndMassMatrices | getCoriolisAndMassMatrices
+{_STATE}C, M, M_rate = (iDynTree.MatrixDynSize(n, n) for _ in range(3))
+assert robot.getCoriolisAndMassMatrices(C, M, M_rate)
+value = M.toNumPy()[cut:, cut:]
+== coriolis_symmetry:rate of M | getCoriolisAndMassMatrices
+{_STATE}C, M, M_rate = (iDynTree.MatrixDynSize(n, n) for _ in range(3))
+assert robot.getCoriolisAndMassMatrices(C, M, M_rate)
+value = M_rate.toNumPy()[cut:, cut:]
+== coriolis_symmetry | getCoriolisAndMassMatrices
+{_STATE}C, M, M_rate = (iDynTree.MatrixDynSize(n, n) for _ in range(3))
+assert robot.getCoriolisAndMassMatrices(C, M, M_rate)
+value = (C.toNumPy() + C.toNumPy().T)[cut:, cut:]
+== link_poses:ForwardPosVelAccKinematics | ForwardPosVelAccKinematics
+{_RAW}value = []
+for k in ks:
+    H = at(k).asHomogeneousTransform().toNumPy()
+    value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))
+== velocity_local:ForwardPosVelAccKinematics | ForwardPosVelAccKinematics
+{_RAW}value = [moving(k).toNumPy() for k in ks]
+== acceleration_local | ForwardPosVelAccKinematics | {_RAW}value = [{_LINK_ACCELERATION} for k in ks]
+== mass_matrix:CompositeRigidBodyAlgorithm | CompositeRigidBodyAlgorithm
+{_RAW}carried, M = iDynTree.LinkInertias(model), iDynTree.FreeFloatingMassMatrix(model)
+assert iDynTree.CompositeRigidBodyAlgorithm(model, traversal, pos.jointPos, carried, M)
+x = robot.getWorldBaseTransform().asHomogeneousTransform().toNumPy()[:3, 3]
+T, arm = np.eye(n), H.asHomogeneousTransform().toNumPy()[:3, 3] - x
+T[:3, :3], T[:3, 3:6], T[3:6, 3:6] = R.T, -R.T @ np.cross(np.eye(3), arm), R.T
+value = (T.T @ M.toNumPy() @ T)[cut:, cut:]
+== accelerometers | AccelerometerSensor.predictMeasurement
+{_RAW}{_PROPER}{_SENSOR.replace("KIND", "AccelerometerSensor").replace("READING", "proper(k), moving(k)")}
+== gyroscopes | GyroscopeSensor.predictMeasurement
+{_RAW}{_SENSOR.replace("KIND", "GyroscopeSensor").replace("READING", "moving(k)")}
+== angular_accelerations | ThreeAxisAngularAccelerometerSensor.predictMeasurement
+{_RAW}{_SENSOR.replace("KIND", "ThreeAxisAngularAccelerometerSensor").replace("READING", "changing(k)")}value = \
+[(robot.getWorldTransform(f'o{{frame}}').getRotation().toNumPy() @ one) for frame, one in zip(sensed, value)]
+""")
+    )
 )

@@ -8,7 +8,7 @@ from ...interface import Convention, Tree, Unsupported
 from ...truth.sensed import WRENCH
 from .. import turns
 from ..turns import idyntree as turning
-from ..writing.source import Source, SourcePlugin, Way
+from ..writing.source import Source, SourcePlugin, Way, ways_of
 from ..writing.urdf import KINDS, UNIT_AXIS, Described, base, of_files, slots_of, through_reader
 from . import further
 
@@ -47,52 +47,39 @@ _FLOATING = {
     "[cut:]": "",
 }
 
-WAYS = {
-    "mass_matrix": Way(
-        "getFreeFloatingMassMatrix",
-        """state(q, v)
+WAYS = ways_of("""
+== mass_matrix | getFreeFloatingMassMatrix
+state(q, v)
 M = iDynTree.MatrixDynSize()
 assert robot.getFreeFloatingMassMatrix(M)
-value = M.toNumPy()[cut:, cut:]""",
-    ),
-    "joint_limits": Way(
-        "getMinPosLimit, getMaxPosLimit",
-        "own = [robot.model().getJoint(k) for k in range(robot.model().getNrOfJoints())]\n"
-        "value = [[one.getMinPosLimit(0), one.getMaxPosLimit(0)] for one in own if one.getNrOfDOFs()]",
-    ),
-    "coriolis_forces": Way(
-        "getCoriolisAndMassMatrices",
-        """state(q, v)
+value = M.toNumPy()[cut:, cut:]
+== joint_limits | getMinPosLimit, getMaxPosLimit
+own = [robot.model().getJoint(k) for k in range(robot.model().getNrOfJoints())]
+value = [[one.getMinPosLimit(0), one.getMaxPosLimit(0)] for one in own if one.getNrOfDOFs()]
+== coriolis_forces | getCoriolisAndMassMatrices
+state(q, v)
 C, M, M_rate = (iDynTree.MatrixDynSize(n, n) for _ in range(3))
 assert robot.getCoriolisAndMassMatrices(C, M, M_rate)
-value = C.toNumPy()[cut:, cut:] @ v""",
-    ),
-    "bias": Way(
-        "generalizedBiasForces",
-        """state(q, v)
+value = C.toNumPy()[cut:, cut:] @ v
+== bias | generalizedBiasForces
+state(q, v)
 value = np.zeros(n)
 assert robot.generalizedBiasForces(value)
-value = value[cut:]""",
-    ),
-    "gravity": Way(
-        "generalizedGravityForces",
-        """state(q, v)
+value = value[cut:]
+== gravity | generalizedGravityForces
+state(q, v)
 value = np.zeros(n)
 assert robot.generalizedGravityForces(value)
-value = value[cut:]""",
-    ),
-    "inverse_dynamics": Way(
-        "inverseDynamics",
-        """state(q, v)
+value = value[cut:]
+== inverse_dynamics | inverseDynamics
+state(q, v)
 none = iDynTree.LinkWrenches(robot.model())
 none.zero()
 forces = iDynTree.FreeFloatingGeneralizedTorques(robot.model())
 assert robot.inverseDynamics(*rates(a), none, forces)
-value = np.concatenate([forces.baseWrench().asVector().toNumPy(), forces.jointTorques().toNumPy()])[cut:]""",
-    ),
-    "joint_wrenches": Way(
-        "inverseDynamicsWithInternalJointForceTorques",
-        """state(q, v)
+value = np.concatenate([forces.baseWrench().asVector().toNumPy(), forces.jointTorques().toNumPy()])[cut:]
+== joint_wrenches | inverseDynamicsWithInternalJointForceTorques
+state(q, v)
 none = iDynTree.LinkWrenches(robot.model())
 none.zero()
 forces = iDynTree.FreeFloatingGeneralizedTorques(robot.model())
@@ -101,69 +88,48 @@ assert robot.inverseDynamicsWithInternalJointForceTorques(*rates(a), none, force
 value = []
 for name, j in zip(links, js):
     R = robot.getWorldTransform(name).asHomogeneousTransform().toNumPy()[:3, :3]
-    value.append((held(j).asVector().toNumPy().reshape(2, 3) @ R).flatten())""",
-    ),
-    "link_poses": Way(
-        "getWorldTransform",
-        """state(q, v)
+    value.append((held(j).asVector().toNumPy().reshape(2, 3) @ R).flatten())
+== link_poses | getWorldTransform
+state(q, v)
 value = []
 for name in links:
     H = robot.getWorldTransform(name).asHomogeneousTransform().toNumPy()
-    value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))""",
-    ),
-    "link_jacobians": Way(
-        "getFrameFreeFloatingJacobian",
-        """state(q, v)
+    value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))
+== link_jacobians | getFrameFreeFloatingJacobian
+state(q, v)
 J, value = iDynTree.MatrixDynSize(6, n), []
 for name in links:
     assert robot.getFrameFreeFloatingJacobian(name, J)
-    value.append(J.toNumPy()[:, cut:].copy())""",
-    ),
-    "link_velocities": Way(
-        "getFrameVel",
-        """state(q, v)
-value = [robot.getFrameVel(name).toNumPy() for name in links]""",
-    ),
-    "link_accelerations": Way(
-        "getFrameAcc",
-        """state(q, v)
-value = [robot.getFrameAcc(name, *rates(a)).toNumPy() for name in links]""",
-    ),
-    "link_velocity_products": Way(
-        "getFrameBiasAcc",
-        """state(q, v)
-value = [robot.getFrameBiasAcc(name).toNumPy() for name in links]""",
-    ),
-    "mass_centre": Way(
-        "getCenterOfMassPosition",
-        """state(q, v)
-value = robot.getCenterOfMassPosition().toNumPy()""",
-    ),
-    "mass_centre_jacobian": Way(
-        "getCenterOfMassJacobian",
-        """state(q, v)
+    value.append(J.toNumPy()[:, cut:].copy())
+== link_velocities | getFrameVel
+state(q, v)
+value = [robot.getFrameVel(name).toNumPy() for name in links]
+== link_accelerations | getFrameAcc
+state(q, v)
+value = [robot.getFrameAcc(name, *rates(a)).toNumPy() for name in links]
+== link_velocity_products | getFrameBiasAcc
+state(q, v)
+value = [robot.getFrameBiasAcc(name).toNumPy() for name in links]
+== mass_centre | getCenterOfMassPosition
+state(q, v)
+value = robot.getCenterOfMassPosition().toNumPy()
+== mass_centre_jacobian | getCenterOfMassJacobian
+state(q, v)
 J = iDynTree.MatrixDynSize(3, n)
 assert robot.getCenterOfMassJacobian(J)
-value = J.toNumPy()[:, cut:]""",
-    ),
-    "mass_centre_velocity_products": Way(
-        "getCenterOfMassBiasAcc",
-        """state(q, v)
-value = robot.getCenterOfMassBiasAcc().toNumPy()""",
-    ),
-    "centroidal_momentum": Way(
-        "getCentroidalTotalMomentum",
-        """state(q, v)
-value = robot.getCentroidalTotalMomentum().asVector().toNumPy()""",
-    ),
-    "centroidal_matrix": Way(
-        "getCentroidalTotalMomentumJacobian",
-        """state(q, v)
+value = J.toNumPy()[:, cut:]
+== mass_centre_velocity_products | getCenterOfMassBiasAcc
+state(q, v)
+value = robot.getCenterOfMassBiasAcc().toNumPy()
+== centroidal_momentum | getCentroidalTotalMomentum
+state(q, v)
+value = robot.getCentroidalTotalMomentum().asVector().toNumPy()
+== centroidal_matrix | getCentroidalTotalMomentumJacobian
+state(q, v)
 J = iDynTree.MatrixDynSize(6, n)
 assert robot.getCentroidalTotalMomentumJacobian(J)
-value = J.toNumPy()[:, cut:]""",
-    ),
-}
+value = J.toNumPy()[:, cut:]
+""")
 # Along each link's own axes: what is applied turns with it.
 WAYS["applied_wrenches"] = Way(
     "addNewContactInFrame, inverseDynamics",
@@ -193,33 +159,23 @@ _STATE = "state(q, v)\n"
 _MATRIX = "J = iDynTree.MatrixDynSize(6, n)\nassert robot.{}(J)\n"
 # Momentum about the mass centre by the inertia of all links as one body there, and by what velocity that has.
 _LOCKED = "I = robot.getCentroidalRobotLockedInertia().asMatrix().toNumPy()\n"
-WAYS |= {
-    "mass_centre_velocity": Way(
-        "getCenterOfMassVelocity", f"{_STATE}value = robot.getCenterOfMassVelocity().toNumPy()"
-    ),
-    "centroidal_momentum:average velocity": Way(
-        "getCentroidalRobotLockedInertia, getCentroidalAverageVelocity",
-        f"{_STATE}{_LOCKED}value = I @ robot.getCentroidalAverageVelocity().asVector().toNumPy()",
-    ),
-    "centroidal_matrix:average velocity": Way(
-        "getCentroidalRobotLockedInertia, getCentroidalAverageVelocityJacobian",
-        f"{_STATE}{_LOCKED}{_MATRIX.format('getCentroidalAverageVelocityJacobian')}value = I @ J.toNumPy()[:, cut:]",
-    ),
-    "relative_poses": Way(
-        "getRelativeTransform",
-        f"""{_STATE}value = []
+WAYS |= ways_of(f"""
+== mass_centre_velocity | getCenterOfMassVelocity | {_STATE}value = robot.getCenterOfMassVelocity().toNumPy()
+== centroidal_momentum:average velocity | getCentroidalRobotLockedInertia, getCentroidalAverageVelocity
+{_STATE}{_LOCKED}value = I @ robot.getCentroidalAverageVelocity().asVector().toNumPy()
+== centroidal_matrix:average velocity | getCentroidalRobotLockedInertia, getCentroidalAverageVelocityJacobian
+{_STATE}{_LOCKED}{_MATRIX.format("getCentroidalAverageVelocityJacobian")}value = I @ J.toNumPy()[:, cut:]
+== relative_poses | getRelativeTransform
+{_STATE}value = []
 for name in links:
     H = robot.getRelativeTransform(links[0], name).asHomogeneousTransform().toNumPy()
-    value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))""",
-    ),
-    "torque_regressor": Way(
-        "inverseDynamicsInertialParametersRegressor",
-        f"""{_STATE}Y = iDynTree.MatrixDynSize(n, 10 * robot.getNrOfLinks())
+    value.append(np.concatenate([H[:3, 3], H[:3, :3].reshape(9)]))
+== torque_regressor | inverseDynamicsInertialParametersRegressor
+{_STATE}Y = iDynTree.MatrixDynSize(n, 10 * robot.getNrOfLinks())
 assert robot.inverseDynamicsInertialParametersRegressor(*rates(a), Y)
 own = [10 * j + k for j in js for k in {turning.PARAMETERS}]
-value = Y.toNumPy()[:, own][cut:]""",
-    ),
-}
+value = Y.toNumPy()[:, own][cut:]
+""")
 _BASE = "free xyzw, linear and angular before"
 
 

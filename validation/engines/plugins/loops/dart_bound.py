@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...interface import STEP, Tree
-from ..writing.source import Way
+from ..writing.source import ways_of
 
 KINDS = {"weld": "WeldJointConstraint", "point": "BallJointConstraint"}
 # Constraints are made where the skeleton stands, and hold what they find there.
@@ -18,21 +18,19 @@ for kind, first, place, other in held_by:
 """.replace("KINDS", repr(KINDS))
 # Part of a speed that its ConstraintForceMixing leaves, of constraints that others nearly imply.
 _MIXED = 1e-6
-WAYS = {
-    "step_bound": Way(
-        "World.step with a constraint: speeds",
-        f"s.setPositions(q); s.setVelocities(v2)\n{_WORLD.replace('GRAVITY', '1.0')}s.setForces(tau)\nw.step()\n"
-        "value = s.getVelocities()",
-        _MIXED,
-    ),
-    "step_at_rest": Way(
-        "World.step with a constraint",
-        f"kept = s.getGravity()\ns.setPositions(q); s.setVelocities(0 * q)\n{_WORLD.replace('GRAVITY', '0.0')}"
-        "w.step()\n"
-        "value = np.r_[s.getPositions(), s.getVelocities()]\ns.setGravity(kept)",
-        _MIXED,
-    ),
-}
+WAYS = ways_of(f"""
+== step_bound ~ {_MIXED} | World.step with a constraint: speeds
+s.setPositions(q); s.setVelocities(v2)
+{_WORLD.replace("GRAVITY", "1.0")}s.setForces(tau)
+w.step()
+value = s.getVelocities()
+== step_at_rest ~ {_MIXED} | World.step with a constraint
+kept = s.getGravity()
+s.setPositions(q); s.setVelocities(0 * q)
+{_WORLD.replace("GRAVITY", "0.0")}w.step()
+value = np.r_[s.getPositions(), s.getVelocities()]
+s.setGravity(kept)
+""")
 
 
 def bound(tree: Tree) -> dict[str, tuple[str, ...]]:

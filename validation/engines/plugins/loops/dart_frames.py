@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...interface import Tree
 from ...truth.points import POINT
 from ...truth.sensed import WRENCH
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 
 _Q = "s.setPositions(q)\n"
 _QV = f"{_Q}s.setVelocities(v)\n"
@@ -23,44 +23,30 @@ def sensed(tree: Tree) -> dict[str, tuple[str, ...]]:
 
 # As the first link sees them, along its axes.
 _SEEN = "A = links[0]\n"
-WAYS = {
-    "relative_poses": Way(
-        "getTransform, withRespectTo",
-        f"{_Q}{_SEEN}X = [b.getTransform(A) for b in links]\n"
-        "value = [[*x.translation(), *x.rotation().flat] for x in X]",
-    ),
-    "relative_velocities": Way(
-        "getLinearVelocity, getAngularVelocity relative to",
-        f"{_QV}{_SEEN}value = [[*b.getLinearVelocity(A, A), *b.getAngularVelocity(A, A)] for b in links]",
-    ),
-    "relative_accelerations": Way(
-        "getLinearAcceleration, getAngularAcceleration relative to",
-        f"{_QVA}{_SEEN}value = [[*b.getLinearAcceleration(A, A), *b.getAngularAcceleration(A, A)] for b in links]",
-    ),
-    "mass_centre_velocity": Way("getCOMLinearVelocity", f"{_QV}value = s.getCOMLinearVelocity()"),
-    "mass_centre_acceleration": Way("getCOMLinearAcceleration", f"{_QVA}value = s.getCOMLinearAcceleration()"),
-    "mechanical_energy": Way(
-        "computeKineticEnergy, computeLagrangian", f"{_QV}value = 2 * s.computeKineticEnergy() - s.computeLagrangian()"
-    ),
-}
+WAYS = ways_of(f"""
+== relative_poses | getTransform, withRespectTo
+{_Q}{_SEEN}X = [b.getTransform(A) for b in links]
+value = [[*x.translation(), *x.rotation().flat] for x in X]
+== relative_velocities | getLinearVelocity, getAngularVelocity relative to
+{_QV}{_SEEN}value = [[*b.getLinearVelocity(A, A), *b.getAngularVelocity(A, A)] for b in links]
+== relative_accelerations | getLinearAcceleration, getAngularAcceleration relative to
+{_QVA}{_SEEN}value = [[*b.getLinearAcceleration(A, A), *b.getAngularAcceleration(A, A)] for b in links]
+== mass_centre_velocity | getCOMLinearVelocity | {_QV}value = s.getCOMLinearVelocity()
+== mass_centre_acceleration | getCOMLinearAcceleration | {_QVA}value = s.getCOMLinearAcceleration()
+== mechanical_energy | computeKineticEnergy, computeLagrangian
+{_QV}value = 2 * s.computeKineticEnergy() - s.computeLagrangian()
+""")
 
 # Of a point of each link.
 _POINT = f"x, W = np.array({list(POINT)}), dart.dynamics.Frame.World()\n"
-WAYS |= {
-    "point_jacobians": Way(
-        "getLinearJacobian, of a point", f"{_Q}{_POINT}value = [s.getLinearJacobian(b, x, W) for b in links]"
-    ),
-    "point_velocities": Way(
-        "getLinearVelocity, of a point", f"{_QV}{_POINT}value = [b.getLinearVelocity(x, W, W) for b in links]"
-    ),
-    "point_accelerations": Way(
-        "getLinearAcceleration, of a point", f"{_QVA}{_POINT}value = [b.getLinearAcceleration(x, W, W) for b in links]"
-    ),
-    "point_velocity_products": Way(
-        "getLinearJacobianDeriv, of a point",
-        f"{_QV}{_POINT}value = [s.getLinearJacobianDeriv(b, x, W) @ v for b in links]",
-    ),
-}
+WAYS |= ways_of(f"""
+== point_jacobians | getLinearJacobian, of a point | {_Q}{_POINT}value = [s.getLinearJacobian(b, x, W) for b in links]
+== point_velocities | getLinearVelocity, of a point | {_QV}{_POINT}value = [b.getLinearVelocity(x, W, W) for b in links]
+== point_accelerations | getLinearAcceleration, of a point
+{_QVA}{_POINT}value = [b.getLinearAcceleration(x, W, W) for b in links]
+== point_velocity_products | getLinearJacobianDeriv, of a point
+{_QV}{_POINT}value = [s.getLinearJacobianDeriv(b, x, W) @ v for b in links]
+""")
 
 _OWN = """own = [
     dart.dynamics.SimpleFrame(links[k], f'o{n}', dart.math.Isometry3(R, r)) for n, (k, R, r) in enumerate(sensed)
@@ -131,71 +117,54 @@ def _pushed(code: str) -> str:
     return code.replace("PUSH", _PUSH).replace("TURN", _TURN)
 
 
-WAYS |= {
-    "frame_jacobians": Way(
-        "getLinearJacobian of a point, getAngularJacobian",
-        f"{_Q}W = dart.dynamics.Frame.World()\n"
-        "value = [np.r_[s.getLinearJacobian(links[k], r, W), s.getAngularJacobian(links[k], W)] for k, R, r in sensed]",
-    ),
-    "frame_jacobians:getJacobian": Way(
-        "getJacobian of a point",
-        f"{_Q}W = dart.dynamics.Frame.World()\n"
-        "value = [np.roll(s.getJacobian(links[k], r, W), 3, axis=0) for k, R, r in sensed]",
-    ),
-    "frame_velocity_products": Way(
-        "getJacobianClassicDeriv of a point",
-        f"{_QV}W = dart.dynamics.Frame.World()\n"
-        "value = [np.roll(s.getJacobianClassicDeriv(links[k], r, W) @ v, 3) for k, R, r in sensed]",
-    ),
-    "applied_wrenches": Way("addExtForce, addExtTorque, computeInverseDynamics", f"{_STILL}{_pushed(_LOCAL)}{_DONE}"),
-    "applied_wrenches:along the world": Way(
-        "addExtForce, addExtTorque along the world", f"{_STILL}{_pushed(_GLOBAL)}{_DONE}"
-    ),
-    "applied_wrenches:computeForwardDynamics": Way(
-        "addExtForce, computeForwardDynamics",
-        f"{_STILL}s.setForces(0 * q)\ns.setTimeStep(0.0)\ns.computeForwardDynamics()\nbefore = s.getAccelerations()\n"
-        f"{_pushed(_LOCAL)}s.computeForwardDynamics()\n"
-        "value = s.getMassMatrix() @ (s.getAccelerations() - before)\ns.clearExternalForces()",
-    ),
-    "applied_wrenches:getExternalForces": Way(
-        "addExtForce, getExternalForces",
-        f"{_STILL}{_pushed(_LOCAL)}value = s.getExternalForces()\ns.clearExternalForces()",
-    ),
-}
+WAYS |= ways_of(f"""
+== frame_jacobians | getLinearJacobian of a point, getAngularJacobian
+{_Q}W = dart.dynamics.Frame.World()
+value = [np.r_[s.getLinearJacobian(links[k], r, W), s.getAngularJacobian(links[k], W)] for k, R, r in sensed]
+== frame_jacobians:getJacobian | getJacobian of a point
+{_Q}W = dart.dynamics.Frame.World()
+value = [np.roll(s.getJacobian(links[k], r, W), 3, axis=0) for k, R, r in sensed]
+== frame_velocity_products | getJacobianClassicDeriv of a point
+{_QV}W = dart.dynamics.Frame.World()
+value = [np.roll(s.getJacobianClassicDeriv(links[k], r, W) @ v, 3) for k, R, r in sensed]
+== applied_wrenches | addExtForce, addExtTorque, computeInverseDynamics | {_STILL}{_pushed(_LOCAL)}{_DONE}
+== applied_wrenches:along the world | addExtForce, addExtTorque along the world | {_STILL}{_pushed(_GLOBAL)}{_DONE}
+== applied_wrenches:computeForwardDynamics | addExtForce, computeForwardDynamics
+{_STILL}s.setForces(0 * q)
+s.setTimeStep(0.0)
+s.computeForwardDynamics()
+before = s.getAccelerations()
+{_pushed(_LOCAL)}s.computeForwardDynamics()
+value = s.getMassMatrix() @ (s.getAccelerations() - before)
+s.clearExternalForces()
+== applied_wrenches:getExternalForces | addExtForce, getExternalForces
+{_STILL}{_pushed(_LOCAL)}value = s.getExternalForces()
+s.clearExternalForces()
+""")
 # Sums over bodies.
 _EACH = "m = np.array([b.getMass() for b in links])\n"
-WAYS |= {
-    "mass_centre:BodyNode": Way("BodyNode.getCOM", f"{_Q}{_EACH}value = m @ [b.getCOM() for b in links] / s.getMass()"),
-    "mass_centre_velocity:BodyNode": Way(
-        "BodyNode.getCOMLinearVelocity",
-        f"{_QV}{_EACH}value = m @ [b.getCOMLinearVelocity() for b in links] / s.getMass()",
-    ),
-    "mass_centre_acceleration:BodyNode": Way(
-        "BodyNode.getCOMLinearAcceleration",
-        f"{_QVA}{_EACH}value = m @ [b.getCOMLinearAcceleration() for b in links] / s.getMass()",
-    ),
-    "mass_centre_acceleration:getCOMSpatialAcceleration": Way(
-        "getCOMLinearJacobian, getCOMLinearJacobianDeriv",
-        f"{_QVA}value = s.getCOMLinearJacobian() @ a + s.getCOMLinearJacobianDeriv() @ v",
-    ),
-    "kinetic_energy:BodyNode": Way(
-        "BodyNode.computeKineticEnergy", f"{_QV}value = sum(b.computeKineticEnergy() for b in links)"
-    ),
-    "centroidal_momentum": Way(
-        "BodyNode.getLinearMomentum, getAngularMomentum",
-        f"{_QV}L = np.zeros(6)\nfor b in links:\n    R, "
-        "p = b.getTransform().rotation(), b.getTransform().translation()\n"
-        "    l, h = R @ b.getLinearMomentum(), R @ b.getAngularMomentum()\n"
-        "    L += [*l, *(h + np.cross(p - s.getCOM(), l))]\nvalue = L",
-    ),
-    "subtree_masses": Way(
-        "BodyNode.getMass, getChildBodyNode",
-        "def below(b):\n"
-        "    return b.getMass() + sum(below(b.getChildBodyNode(k)) for k in range(b.getNumChildBodyNodes()))\n"
-        "value = [below(b) for b in links]",
-    ),
-    "inverse_dynamics_acted": Way(
-        "computeInverseDynamics with dampers and springs",
-        f"{_QVA}s.setTimeStep(0.0)\ns.computeInverseDynamics(False, True, True)\nvalue = s.getForces()",
-    ),
-}
+WAYS |= ways_of(f"""
+== mass_centre:BodyNode | BodyNode.getCOM | {_Q}{_EACH}value = m @ [b.getCOM() for b in links] / s.getMass()
+== mass_centre_velocity:BodyNode | BodyNode.getCOMLinearVelocity
+{_QV}{_EACH}value = m @ [b.getCOMLinearVelocity() for b in links] / s.getMass()
+== mass_centre_acceleration:BodyNode | BodyNode.getCOMLinearAcceleration
+{_QVA}{_EACH}value = m @ [b.getCOMLinearAcceleration() for b in links] / s.getMass()
+== mass_centre_acceleration:getCOMSpatialAcceleration | getCOMLinearJacobian, getCOMLinearJacobianDeriv
+{_QVA}value = s.getCOMLinearJacobian() @ a + s.getCOMLinearJacobianDeriv() @ v
+== kinetic_energy:BodyNode | BodyNode.computeKineticEnergy | {_QV}value = sum(b.computeKineticEnergy() for b in links)
+== centroidal_momentum | BodyNode.getLinearMomentum, getAngularMomentum
+{_QV}L = np.zeros(6)
+for b in links:
+    R, p = b.getTransform().rotation(), b.getTransform().translation()
+    l, h = R @ b.getLinearMomentum(), R @ b.getAngularMomentum()
+    L += [*l, *(h + np.cross(p - s.getCOM(), l))]
+value = L
+== subtree_masses | BodyNode.getMass, getChildBodyNode
+def below(b):
+    return b.getMass() + sum(below(b.getChildBodyNode(k)) for k in range(b.getNumChildBodyNodes()))
+value = [below(b) for b in links]
+== inverse_dynamics_acted | computeInverseDynamics with dampers and springs
+{_QVA}s.setTimeStep(0.0)
+s.computeInverseDynamics(False, True, True)
+value = s.getForces()
+""")

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 
 _SET = "s.setPositions(q); s.setVelocities(v); s.setAccelerations(a)\n"
 _OWN = "own = [j.getIndexInSkeleton(k) for k in range(j.getNumDofs())]\n"
@@ -42,32 +42,21 @@ WAYS = (
         for way, native, code in (("", "joints' setters", _SETTERS), (":DegreeOfFreedom", "DegreeOfFreedom", _DEGREES))
         for name, of in (("coordinates_of_links", "Positions"), ("speeds_of_links", "Velocities"))
     }
-    | {
-        "bias:joints": Way("joints' setters", f"{_SETTERS}value = s.getCoriolisAndGravityForces()"),
-        "link_poses:DegreeOfFreedom": Way(
-            "DegreeOfFreedom.setPosition",
-            f"{_DEGREES}X = [b.getTransform() for b in links]\n"
-            "value = [[*x.translation(), *x.rotation().flat] for x in X]",
-        ),
-        # Beside M, what a step makes of dampers and springs.
-        "mass_matrix:getAugMassMatrix": Way(
-            "getAugMassMatrix", f"{_SET}s.setTimeStep(0.0)\nvalue = s.getAugMassMatrix()"
-        ),
-        "link_jacobians:getWorldJacobian": Way(
-            "getWorldJacobian", f"{_SET}value = [np.roll(s.getWorldJacobian(b), 3, axis=0) for b in links]"
-        ),
-        "link_jacobians:linear and angular": Way(
-            "getLinearJacobian, getAngularJacobian",
-            f"{_SET}{_WORLD}value = [np.r_[s.getLinearJacobian(b, W), s.getAngularJacobian(b, W)] for b in links]",
-        ),
-        "link_jacobian_rates:linear and angular": Way(
-            "getLinearJacobianDeriv, getAngularJacobianDeriv",
-            f"{_SET}{_WORLD}"
-            "value = [np.r_[s.getLinearJacobianDeriv(b, W), s.getAngularJacobianDeriv(b, W)] for b in links]",
-        ),
-        "mass_centre_jacobian:getCOMJacobian": Way("getCOMJacobian", f"{_SET}{_WORLD}value = s.getCOMJacobian(W)[3:]"),
-        "mass_centre_velocity:getCOMSpatialVelocity": Way(
-            "getCOMSpatialVelocity", f"{_SET}{_WORLD}value = s.getCOMSpatialVelocity(W, W)[3:]"
-        ),
-    }
+    | ways_of(f"""
+== bias:joints | joints' setters | {_SETTERS}value = s.getCoriolisAndGravityForces()
+== link_poses:DegreeOfFreedom | DegreeOfFreedom.setPosition
+{_DEGREES}X = [b.getTransform() for b in links]
+value = [[*x.translation(), *x.rotation().flat] for x in X]
+== # Beside M, what a step makes of dampers and springs.
+== mass_matrix:getAugMassMatrix | getAugMassMatrix | {_SET}s.setTimeStep(0.0)\nvalue = s.getAugMassMatrix()
+== link_jacobians:getWorldJacobian | getWorldJacobian
+{_SET}value = [np.roll(s.getWorldJacobian(b), 3, axis=0) for b in links]
+== link_jacobians:linear and angular | getLinearJacobian, getAngularJacobian
+{_SET}{_WORLD}value = [np.r_[s.getLinearJacobian(b, W), s.getAngularJacobian(b, W)] for b in links]
+== link_jacobian_rates:linear and angular | getLinearJacobianDeriv, getAngularJacobianDeriv
+{_SET}{_WORLD}value = [np.r_[s.getLinearJacobianDeriv(b, W), s.getAngularJacobianDeriv(b, W)] for b in links]
+== mass_centre_jacobian:getCOMJacobian | getCOMJacobian | {_SET}{_WORLD}value = s.getCOMJacobian(W)[3:]
+== mass_centre_velocity:getCOMSpatialVelocity | getCOMSpatialVelocity
+{_SET}{_WORLD}value = s.getCOMSpatialVelocity(W, W)[3:]
+""")
 )

@@ -7,7 +7,7 @@ from collections.abc import Mapping
 
 from ...interface import STEP, Actuator, Tree, Unsupported
 from ...truth.sensed import WRENCH
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 
 SPEEDS = "p.SetVelocities(c, v)\n"
 QV = f"p.SetPositions(c, q)\n{SPEEDS}"
@@ -120,20 +120,17 @@ def _integrated(name: str) -> Way:
     return Way(name, _SIMULATION.replace("INTEGRATOR", _FIXED.replace("NAME", name)))
 
 
-WAYS: dict[str, Way] = {
-    "step_stiffness_implicit_straight": Way(
-        "JointActuator.set_controller_gains", _SIMULATION.replace("INTEGRATOR", "")
-    ),
-    "controlled_forces": Way(
-        "InverseDynamicsController",
-        f"""{QV}gains, state = np.ones(len(v)), np.r_[q, v]
+WAYS: dict[str, Way] = ways_of(f"""
+== step_stiffness_implicit_straight | JointActuator.set_controller_gains | {_SIMULATION.replace("INTEGRATOR", "")}
+== controlled_forces | InverseDynamicsController
+{QV}gains, state = np.ones(len(v)), np.r_[q, v]
 controller = drake.InverseDynamicsController(p, gains, 0 * gains, gains, True)
 e = controller.CreateDefaultContext()
 controller.get_input_port_estimated_state().FixValue(e, state)
 controller.get_input_port_desired_state().FixValue(e, state)
 controller.get_input_port_desired_acceleration().FixValue(e, a)
-value = controller.get_output_port_control().Eval(e)""",
-    ),
+value = controller.get_output_port_control().Eval(e)
+""") | {
     "step_dampers_implicit_straight": Way(
         "MultibodyPlant with a time step",
         _SIMULATION.replace("INTEGRATOR", ""),
@@ -197,117 +194,89 @@ for j in js:
     x, wrench = j.frame_on_child().GetFixedPoseInBodyFrame(), held[j.index()]
     force, moment = (x.rotation().matrix() @ part for part in (wrench.translational(), wrench.rotational()))
     value.append([*force, *(moment + np.cross(x.translation(), force))])"""
-WAYS |= {
-    "joint_speed_limits": Way("GetVelocityUpperLimits", "value = p.GetVelocityUpperLimits()"),
-    "joint_limits": Way(
-        "GetPositionLowerLimits, GetPositionUpperLimits",
-        "value = np.c_[p.GetPositionLowerLimits(), p.GetPositionUpperLimits()]",
-    ),
-    "joint_limits_of_some": Way(
-        "GetPositionLowerLimits, GetPositionUpperLimits",
-        """x, value = np.c_[p.GetPositionLowerLimits(), p.GetPositionUpperLimits()], np.zeros((p.num_velocities(), 2))
+WAYS |= (
+    ways_of(f"""
+== joint_speed_limits | GetVelocityUpperLimits | value = p.GetVelocityUpperLimits()
+== joint_limits | GetPositionLowerLimits, GetPositionUpperLimits
+value = np.c_[p.GetPositionLowerLimits(), p.GetPositionUpperLimits()]
+== joint_limits_of_some | GetPositionLowerLimits, GetPositionUpperLimits
+x, value = np.c_[p.GetPositionLowerLimits(), p.GetPositionUpperLimits()], np.zeros((p.num_velocities(), 2))
 for j in (p.get_joint(k) for k in p.GetJointIndices()):
     if j.num_positions() == j.num_velocities():
         own = x[j.position_start() : j.position_start() + j.num_positions()]
-        value[j.velocity_start() : j.velocity_start() + len(own)] = np.where(np.isfinite(own), own, 0.0)""",
-    ),
-    "joint_wrenches": Way(
-        "reaction_forces",
-        f"{DRIVEN}{_HELD}",
-    ),
-    "joint_wrenches_driven": Way("reaction_forces", f"{QV}{_APPLIED}{_HELD}"),
-    "accelerometers": _sensors(
-        "Accelerometer", "body_spatial_velocities", "body_spatial_accelerations", more=", gravity"
-    ),
-    "frame_jacobians": Way(
-        "CalcJacobianSpatialVelocity of points",
-        f"{Q}W, V = p.world_frame(), drake.JacobianWrtVariable.kV\nlinks\n"
-        "value = [np.roll(p.CalcJacobianSpatialVelocity(c, V, links[k].body_frame(), r, W, W), 3, axis=0)"
-        " for k, R, r in sensed]",
-    ),
-    "actuator_forces": Way("get_net_actuation_output_port", f"{QV}value = p.get_net_actuation_output_port().Eval(c)"),
-    "actuated_forces": Way(
-        "MakeActuationMatrix", f"{QV}value = p.MakeActuationMatrix() @ p.get_net_actuation_output_port().Eval(c)"
-    ),
-    "forward_dynamics:port": Way(
-        "generalized_acceleration output port",
-        f"{QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)\n"
-        "value = p.get_generalized_acceleration_output_port().Eval(c)",
-    ),
-    "applied_wrenches": Way(
-        "AddInForce, CalcInverseDynamics",
-        f"""{Q}p.SetVelocities(c, np.zeros(p.num_velocities()))
+        value[j.velocity_start() : j.velocity_start() + len(own)] = np.where(np.isfinite(own), own, 0.0)
+== joint_wrenches | reaction_forces | {DRIVEN}{_HELD}
+== joint_wrenches_driven | reaction_forces | {QV}{_APPLIED}{_HELD}
+""")
+    | {
+        "accelerometers": _sensors(
+            "Accelerometer", "body_spatial_velocities", "body_spatial_accelerations", more=", gravity"
+        ),
+    }
+    | ways_of(f"""
+== frame_jacobians | CalcJacobianSpatialVelocity of points
+{Q}W, V = p.world_frame(), drake.JacobianWrtVariable.kV
+links
+value = [np.roll(p.CalcJacobianSpatialVelocity(c, V, links[k].body_frame(), r, W, W), 3, axis=0) for k, R, r in sensed]
+== actuator_forces | get_net_actuation_output_port | {QV}value = p.get_net_actuation_output_port().Eval(c)
+== actuated_forces | MakeActuationMatrix
+{QV}value = p.MakeActuationMatrix() @ p.get_net_actuation_output_port().Eval(c)
+== forward_dynamics:port | generalized_acceleration output port
+{QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)
+value = p.get_generalized_acceleration_output_port().Eval(c)
+== applied_wrenches | AddInForce, CalcInverseDynamics
+{Q}p.SetVelocities(c, np.zeros(p.num_velocities()))
 links
 applied, zero = drake.MultibodyForces(p), np.zeros(p.num_velocities())
 for k, R, r in sensed:
     X = p.EvalBodyPoseInWorld(c, links[k]).rotation().matrix()
     push, turn = X @ R @ {list(WRENCH[:3])}, X @ R @ {list(WRENCH[3:])}
     links[k].AddInForce(c, X @ r, drake.SpatialForce(turn, push), p.world_frame(), applied)
-value = p.CalcInverseDynamics(c, zero, drake.MultibodyForces(p)) - p.CalcInverseDynamics(c, zero, applied)""",
-    ),
-    "gyroscopes": _sensors("Gyroscope", "body_spatial_velocities"),
-}
+value = p.CalcInverseDynamics(c, zero, drake.MultibodyForces(p)) - p.CalcInverseDynamics(c, zero, applied)
+""")
+    | {
+        "gyroscopes": _sensors("Gyroscope", "body_spatial_velocities"),
+    }
+)
 
 # As the first link sees them, along its axes.
 _SEEN = "A, W, V = links[0].body_frame(), p.world_frame(), drake.JacobianWrtVariable.kV\n"
 _EACH = "for b in links"
-WAYS |= {
-    "relative_poses": Way(
-        "CalcRelativeTransform",
-        f"{Q}{_SEEN}poses = [p.CalcRelativeTransform(c, A, b.body_frame()) {_EACH}]\n"
-        "value = [[*x.translation(), *x.rotation().matrix().flat] for x in poses]",
-    ),
-    "relative_poses:CalcPointsPositions": Way(
-        "CalcPointsPositions, CalcRelativeRotationMatrix",
-        f"{Q}{_SEEN}value = [[*p.CalcPointsPositions(c, b.body_frame(), [[0], [0], [0]], A).ravel(),"
-        f" *p.CalcRelativeRotationMatrix(c, A, b.body_frame()).matrix().flat] {_EACH}]",
-    ),
-    "relative_velocities": Way(
-        "Frame.CalcSpatialVelocity",
-        f"{QV}{_SEEN}twists = [b.body_frame().CalcSpatialVelocity(c, A, A) {_EACH}]\n"
-        "value = [[*t.translational(), *t.rotational()] for t in twists]",
-    ),
-    "relative_jacobians": Way(
-        "CalcJacobianSpatialVelocity in a frame",
-        f"{Q}{_SEEN}"
-        f"value = [np.roll(p.CalcJacobianSpatialVelocity(c, V, b.body_frame(), [0, 0, 0], A, A), 3, axis=0) {_EACH}]",
-    ),
-    "relative_jacobians:translational and angular": Way(
-        "CalcJacobianTranslationalVelocity, CalcJacobianAngularVelocity",
-        f"{Q}{_SEEN}value = [np.r_[p.CalcJacobianTranslationalVelocity(c, V, b.body_frame(), [0, 0, 0], A, A),"
-        f" p.CalcJacobianAngularVelocity(c, V, b.body_frame(), A, A)] {_EACH}]",
-    ),
-    "link_velocity_products:CalcBiasTranslationalAcceleration": Way(
-        "CalcBiasTranslationalAcceleration",
-        f"{QV}{_SEEN}value = [[*p.CalcBiasTranslationalAcceleration(c, V, b.body_frame(), [0, 0, 0], W, W).ravel(),"
-        f" *p.CalcBiasSpatialAcceleration(c, V, b.body_frame(), [0, 0, 0], W, W).rotational()] {_EACH}]",
-    ),
-    "mass_centre_velocity": Way(
-        "CalcCenterOfMassTranslationalVelocityInWorld", f"{QV}value = p.CalcCenterOfMassTranslationalVelocityInWorld(c)"
-    ),
-    "mechanical_energy": Way(
-        "EvalKineticEnergy, EvalPotentialEnergy", f"{QV}value = p.EvalKineticEnergy(c) + p.EvalPotentialEnergy(c)"
-    ),
-    "coordinate_rates": Way("MapVelocityToQDot", f"{QV}value = p.MapVelocityToQDot(c, v)"),
-    "coordinate_rates:MakeVelocityToQDotMap": Way(
-        "MakeVelocityToQDotMap", f"{QV}value = p.MakeVelocityToQDotMap(c).toarray() @ v"
-    ),
-    "speeds_of_rates": Way("MapQDotToVelocity", f"{QV}value = p.MapQDotToVelocity(c, p.MapVelocityToQDot(c, v))"),
-    "speeds_of_rates:MakeQDotToVelocityMap": Way(
-        "MakeQDotToVelocityMap", f"{QV}value = p.MakeQDotToVelocityMap(c).toarray() @ p.MapVelocityToQDot(c, v)"
-    ),
-    "link_accelerations_driven": Way(
-        "body_spatial_accelerations output port",
-        f"{QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)\n"
-        "every = p.get_body_spatial_accelerations_output_port().Eval(c)\n"
-        f"value = [[*every[b.index()].translational(), *every[b.index()].rotational()] {_EACH}]",
-    ),
-    "carried_inertias": Way(
-        "CalcSpatialInertia",
-        f"""{Q}value = []
+WAYS |= ways_of(f"""
+== relative_poses | CalcRelativeTransform
+{Q}{_SEEN}poses = [p.CalcRelativeTransform(c, A, b.body_frame()) {_EACH}]
+value = [[*x.translation(), *x.rotation().matrix().flat] for x in poses]
+== relative_poses:CalcPointsPositions | CalcPointsPositions, CalcRelativeRotationMatrix
+{Q}{_SEEN}value = [[*p.CalcPointsPositions(c, b.body_frame(), [[0], [0], [0]], A).ravel(), \
+*p.CalcRelativeRotationMatrix(c, A, b.body_frame()).matrix().flat] {_EACH}]
+== relative_velocities | Frame.CalcSpatialVelocity
+{QV}{_SEEN}twists = [b.body_frame().CalcSpatialVelocity(c, A, A) {_EACH}]
+value = [[*t.translational(), *t.rotational()] for t in twists]
+== relative_jacobians | CalcJacobianSpatialVelocity in a frame
+{Q}{_SEEN}value = [np.roll(p.CalcJacobianSpatialVelocity(c, V, b.body_frame(), [0, 0, 0], A, A), 3, axis=0) {_EACH}]
+== relative_jacobians:translational and angular | CalcJacobianTranslationalVelocity, CalcJacobianAngularVelocity
+{Q}{_SEEN}value = [np.r_[p.CalcJacobianTranslationalVelocity(c, V, b.body_frame(), [0, 0, 0], A, A), \
+p.CalcJacobianAngularVelocity(c, V, b.body_frame(), A, A)] {_EACH}]
+== link_velocity_products:CalcBiasTranslationalAcceleration | CalcBiasTranslationalAcceleration
+{QV}{_SEEN}value = [[*p.CalcBiasTranslationalAcceleration(c, V, b.body_frame(), [0, 0, 0], W, W).ravel(), \
+*p.CalcBiasSpatialAcceleration(c, V, b.body_frame(), [0, 0, 0], W, W).rotational()] {_EACH}]
+== mass_centre_velocity | CalcCenterOfMassTranslationalVelocityInWorld
+{QV}value = p.CalcCenterOfMassTranslationalVelocityInWorld(c)
+== mechanical_energy | EvalKineticEnergy, EvalPotentialEnergy
+{QV}value = p.EvalKineticEnergy(c) + p.EvalPotentialEnergy(c)
+== coordinate_rates | MapVelocityToQDot | {QV}value = p.MapVelocityToQDot(c, v)
+== coordinate_rates:MakeVelocityToQDotMap | MakeVelocityToQDotMap | {QV}value = p.MakeVelocityToQDotMap(c).toarray() @ v
+== speeds_of_rates | MapQDotToVelocity | {QV}value = p.MapQDotToVelocity(c, p.MapVelocityToQDot(c, v))
+== speeds_of_rates:MakeQDotToVelocityMap | MakeQDotToVelocityMap
+{QV}value = p.MakeQDotToVelocityMap(c).toarray() @ p.MapVelocityToQDot(c, v)
+== link_accelerations_driven | body_spatial_accelerations output port
+{QV}p.get_applied_generalized_force_input_port().FixValue(c, tau)
+every = p.get_body_spatial_accelerations_output_port().Eval(c)
+value = [[*every[b.index()].translational(), *every[b.index()].rotational()] {_EACH}]
+== carried_inertias | CalcSpatialInertia
+{Q}value = []
 def below(b): return [b.index()] + [k for x in links if parents[links.index(x)] == links.index(b) for k in below(x)]
 for b in links:
     K = p.CalcSpatialInertia(c, b.body_frame(), below(b))
-    value.append(np.roll(K.CopyToFullMatrix6(), (3, 3), (0, 1)))""",
-    ),
-}
+    value.append(np.roll(K.CopyToFullMatrix6(), (3, 3), (0, 1)))
+""")

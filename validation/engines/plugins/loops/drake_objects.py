@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...truth.points import POINT
 from ...truth.sensed import WRENCH
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 from .drake_forces import DRIVEN, FORCES, QV, Q
 
 # Type of a joint -> what it sets and reads of its coordinates and of its speeds, each with its size.
@@ -147,83 +147,59 @@ WAYS |= {
         "coriolis_forces": "value = p.CalcBiasTerm(c)",
     }.items()
 }
-WAYS |= {
-    "coordinates_of_links": Way(_OF_JOINTS, f"{_BY_JOINTS}value = p.GetPositions(c)"),
-    "coordinates_of_links:getters": Way(
-        "joints' own getters", QV + _READ.replace("WHICH", "q").replace("SPEEDS", "False")
-    ),
-    # By poses: a default quaternion may be kept as the opposite one, which is the same orientation.
-    "link_poses:SetDefaultPositions": Way(
-        "SetDefaultPositions",
-        "p.SetDefaultPositions(q)\nc = p.CreateDefaultContext()\n" + _poses("b.EvalPoseInWorld(c)"),
-    ),
-    "speeds_of_links": Way(_OF_JOINTS, f"{_BY_JOINTS}value = p.GetVelocities(c)"),
-    "speeds_of_links:getters": Way("joints' own getters", QV + _READ.replace("WHICH", "v").replace("SPEEDS", "True")),
-    "link_poses:body_poses": Way(
-        "body_poses output port",
-        f"{Q}every = p.get_body_poses_output_port().Eval(c)\n" + _poses("every[b.index()]"),
-    ),
-    "link_velocities:body_spatial_velocities": Way(
-        "body_spatial_velocities output port",
-        f"{QV}every = p.get_body_spatial_velocities_output_port().Eval(c)\n" + _each("every[b.index()]"),
-    ),
-    "link_turning": Way(
-        "RigidBody.EvalSpatialVelocityInWorld",
-        f"{QV}value = [b.EvalSpatialVelocityInWorld(c).rotational() for b in links]",
-    ),
-    "link_turning:port": Way(
-        "body_spatial_velocities output port",
-        f"{QV}every = p.get_body_spatial_velocities_output_port().Eval(c)\n"
-        "value = [every[b.index()].rotational() for b in links]",
-    ),
-    "link_turning:EvalAngularVelocityInWorld": Way(
-        "Frame.EvalAngularVelocityInWorld", f"{QV}value = [b.body_frame().EvalAngularVelocityInWorld(c) for b in links]"
-    ),
-    "link_accelerations:RigidBody": Way(
-        "RigidBody.EvalSpatialAccelerationInWorld", DRIVEN + _each("b.EvalSpatialAccelerationInWorld(c)")
-    ),
-    "relative_accelerations": Way(
-        "Frame.CalcSpatialAcceleration", f"{DRIVEN}{_SEEN}" + _each("b.body_frame().CalcSpatialAcceleration(c, A, A)")
-    ),
-    "link_jacobians:kQDot": Way(
-        "CalcJacobianSpatialVelocity, kQDot",
-        f"{Q}{_W}{_N}value = [np.roll(p.CalcJacobianSpatialVelocity(c, kQ, b.body_frame(), [0, 0, 0], W, W), 3, axis=0)"
-        " @ N for b in links]",
-    ),
-    "relative_jacobians:kQDot": Way(
-        "CalcJacobianSpatialVelocity in a frame, kQDot",
-        f"{Q}{_W}{_N}{_SEEN}value = [np.roll(p.CalcJacobianSpatialVelocity(c, kQ, b.body_frame(), [0, 0, 0], A, A), 3,"
-        " axis=0) @ N for b in links]",
-    ),
-    "mass_centre_jacobian:kQDot": Way(
-        "CalcJacobianCenterOfMassTranslationalVelocity, kQDot",
-        f"{Q}{_W}{_N}value = p.CalcJacobianCenterOfMassTranslationalVelocity(c, kQ, W, W) @ N",
-    ),
-    "point_jacobians:CalcJacobianPositionVector": Way(
-        "CalcJacobianPositionVector",
-        f"{Q}{_W}{_N}value = [p.CalcJacobianPositionVector(c, b.body_frame(), {_AT}, W, W) @ N for b in links]",
-    ),
-    "point_velocities": Way(
-        "CalcPointsVelocities",
-        f"{QV}{_W}value = [p.CalcPointsVelocities(c, b.body_frame(), {_AT}, W, W).ravel() for b in links]",
-    ),
-    "inverse_dynamics:CalcImplicitTimeDerivativesResidual": Way(
-        "CalcImplicitTimeDerivativesResidual",
-        f"{QV}rates = p.AllocateTimeDerivatives()\nrates.SetFromVector(np.r_[p.MapVelocityToQDot(c, v), a])\n"
-        "value = p.CalcImplicitTimeDerivativesResidual(c, rates)[-len(v) :]",
-    ),
-    "gravity:CalcGeneralizedForces": Way(
-        "CalcForceElementsContribution, CalcGeneralizedForces",
-        f"p.SetPositions(c, q)\n{FORCES}value = -p.CalcGeneralizedForces(c, forces)",
-    ),
-    "stored_energy_rate": Way("CalcConservativePower", f"{QV}value = -p.CalcConservativePower(c)"),
-    "applied_wrenches:applied_spatial_force": Way(
-        "applied_spatial_force input port",
-        f"{Q}p.SetVelocities(c, np.zeros(p.num_velocities()))\nlinks\n"
-        "p.get_applied_spatial_force_input_port().FixValue(c, [])\n"
-        "before = p.EvalTimeDerivatives(c).CopyToVector()[-p.num_velocities() :]\n"
-        f"{_SPATIAL}p.get_applied_spatial_force_input_port().FixValue(c, applied)\n"
-        "after = p.EvalTimeDerivatives(c).CopyToVector()[-p.num_velocities() :]\n"
-        "value = p.CalcMassMatrix(c) @ (after - before)",
-    ),
-}
+WAYS |= ways_of(f"""
+== coordinates_of_links | {_OF_JOINTS} | {_BY_JOINTS}value = p.GetPositions(c)
+== coordinates_of_links:getters | joints' own getters | {QV}{_READ.replace("WHICH", "q").replace("SPEEDS", "False")}
+== # By poses: a default quaternion may be kept as the opposite one, which is the same orientation.
+== link_poses:SetDefaultPositions | SetDefaultPositions
+p.SetDefaultPositions(q)
+c = p.CreateDefaultContext()
+{_poses("b.EvalPoseInWorld(c)")}
+== speeds_of_links | {_OF_JOINTS} | {_BY_JOINTS}value = p.GetVelocities(c)
+== speeds_of_links:getters | joints' own getters | {QV}{_READ.replace("WHICH", "v").replace("SPEEDS", "True")}
+== link_poses:body_poses | body_poses output port
+{Q}every = p.get_body_poses_output_port().Eval(c)
+{_poses("every[b.index()]")}
+== link_velocities:body_spatial_velocities | body_spatial_velocities output port
+{QV}every = p.get_body_spatial_velocities_output_port().Eval(c)
+{_each("every[b.index()]")}
+== link_turning | RigidBody.EvalSpatialVelocityInWorld
+{QV}value = [b.EvalSpatialVelocityInWorld(c).rotational() for b in links]
+== link_turning:port | body_spatial_velocities output port
+{QV}every = p.get_body_spatial_velocities_output_port().Eval(c)
+value = [every[b.index()].rotational() for b in links]
+== link_turning:EvalAngularVelocityInWorld | Frame.EvalAngularVelocityInWorld
+{QV}value = [b.body_frame().EvalAngularVelocityInWorld(c) for b in links]
+== link_accelerations:RigidBody | RigidBody.EvalSpatialAccelerationInWorld
+{DRIVEN}{_each("b.EvalSpatialAccelerationInWorld(c)")}
+== relative_accelerations | Frame.CalcSpatialAcceleration
+{DRIVEN}{_SEEN}{_each("b.body_frame().CalcSpatialAcceleration(c, A, A)")}
+== link_jacobians:kQDot | CalcJacobianSpatialVelocity, kQDot
+{Q}{_W}{_N}value = [np.roll(p.CalcJacobianSpatialVelocity(c, kQ, b.body_frame(), [0, 0, 0], W, W), 3, axis=0) @ N for \
+b in links]
+== relative_jacobians:kQDot | CalcJacobianSpatialVelocity in a frame, kQDot
+{Q}{_W}{_N}{_SEEN}value = [np.roll(p.CalcJacobianSpatialVelocity(c, kQ, b.body_frame(), [0, 0, 0], A, A), 3, axis=0) @ \
+N for b in links]
+== mass_centre_jacobian:kQDot | CalcJacobianCenterOfMassTranslationalVelocity, kQDot
+{Q}{_W}{_N}value = p.CalcJacobianCenterOfMassTranslationalVelocity(c, kQ, W, W) @ N
+== point_jacobians:CalcJacobianPositionVector | CalcJacobianPositionVector
+{Q}{_W}{_N}value = [p.CalcJacobianPositionVector(c, b.body_frame(), {_AT}, W, W) @ N for b in links]
+== point_velocities | CalcPointsVelocities
+{QV}{_W}value = [p.CalcPointsVelocities(c, b.body_frame(), {_AT}, W, W).ravel() for b in links]
+== inverse_dynamics:CalcImplicitTimeDerivativesResidual | CalcImplicitTimeDerivativesResidual
+{QV}rates = p.AllocateTimeDerivatives()
+rates.SetFromVector(np.r_[p.MapVelocityToQDot(c, v), a])
+value = p.CalcImplicitTimeDerivativesResidual(c, rates)[-len(v) :]
+== gravity:CalcGeneralizedForces | CalcForceElementsContribution, CalcGeneralizedForces
+p.SetPositions(c, q)
+{FORCES}value = -p.CalcGeneralizedForces(c, forces)
+== stored_energy_rate | CalcConservativePower | {QV}value = -p.CalcConservativePower(c)
+== applied_wrenches:applied_spatial_force | applied_spatial_force input port
+{Q}p.SetVelocities(c, np.zeros(p.num_velocities()))
+links
+p.get_applied_spatial_force_input_port().FixValue(c, [])
+before = p.EvalTimeDerivatives(c).CopyToVector()[-p.num_velocities() :]
+{_SPATIAL}p.get_applied_spatial_force_input_port().FixValue(c, applied)
+after = p.EvalTimeDerivatives(c).CopyToVector()[-p.num_velocities() :]
+value = p.CalcMassMatrix(c) @ (after - before)
+""")

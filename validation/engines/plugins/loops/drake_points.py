@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...truth.points import POINT
-from ..writing.source import Way
+from ..writing.source import ways_of
 from .drake_forces import FORCES, QV, Q
 from .drake_gradients import BY_Q, BY_V, EACH, WHOLE, gradient
 
@@ -25,29 +25,17 @@ _ACCELERATIONS = (
     f"{_SEEDED}out = [ad.CalcJacobianTranslationalVelocity(d, *x) @ a"
     f" + np.ravel(ad.CalcBiasTranslationalAcceleration(d, *x)) for x in at]{EACH}"
 )
-WAYS = {
-    "point_jacobians": Way(
-        "CalcJacobianTranslationalVelocity",
-        f"{Q}{_FRAMES}value = [p.CalcJacobianTranslationalVelocity(c, *x) for x in at]",
-    ),
-    "point_velocity_products": Way(
-        "CalcBiasTranslationalAcceleration",
-        f"{QV}{_FRAMES}value = [np.ravel(p.CalcBiasTranslationalAcceleration(c, *x)) for x in at]",
-    ),
-    "point_velocities_dq": Way("CalcJacobianTranslationalVelocity, AutoDiffXd", gradient(_VELOCITIES, BY_Q) + WHOLE),
-    "point_accelerations_dq": Way(
-        "CalcBiasTranslationalAcceleration, AutoDiffXd", gradient(_ACCELERATIONS, BY_Q) + WHOLE
-    ),
-    "point_accelerations_dv": Way(
-        "CalcBiasTranslationalAcceleration, AutoDiffXd", gradient(_ACCELERATIONS, BY_V) + WHOLE
-    ),
-    "link_accelerations:EvalBodySpatialAccelerationInWorld": Way(
-        "EvalBodySpatialAccelerationInWorld",
-        f"{_ACCELERATED}every = [p.EvalBodySpatialAccelerationInWorld(c, b) for b in links]\n"
-        "value = [[*x.translational(), *x.rotational()] for x in every]",
-    ),
-    "mass_centre_acceleration": Way(
-        "CalcCenterOfMassTranslationalAccelerationInWorld",
-        f"{_ACCELERATED}value = p.CalcCenterOfMassTranslationalAccelerationInWorld(c)",
-    ),
-}
+WAYS = ways_of(f"""
+== point_jacobians | CalcJacobianTranslationalVelocity
+{Q}{_FRAMES}value = [p.CalcJacobianTranslationalVelocity(c, *x) for x in at]
+== point_velocity_products | CalcBiasTranslationalAcceleration
+{QV}{_FRAMES}value = [np.ravel(p.CalcBiasTranslationalAcceleration(c, *x)) for x in at]
+== point_velocities_dq | CalcJacobianTranslationalVelocity, AutoDiffXd | {gradient(_VELOCITIES, BY_Q)}{WHOLE}
+== point_accelerations_dq | CalcBiasTranslationalAcceleration, AutoDiffXd | {gradient(_ACCELERATIONS, BY_Q)}{WHOLE}
+== point_accelerations_dv | CalcBiasTranslationalAcceleration, AutoDiffXd | {gradient(_ACCELERATIONS, BY_V)}{WHOLE}
+== link_accelerations:EvalBodySpatialAccelerationInWorld | EvalBodySpatialAccelerationInWorld
+{_ACCELERATED}every = [p.EvalBodySpatialAccelerationInWorld(c, b) for b in links]
+value = [[*x.translational(), *x.rotational()] for x in every]
+== mass_centre_acceleration | CalcCenterOfMassTranslationalAccelerationInWorld
+{_ACCELERATED}value = p.CalcCenterOfMassTranslationalAccelerationInWorld(c)
+""")

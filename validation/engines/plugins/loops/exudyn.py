@@ -23,7 +23,7 @@ import numpy as np
 from ...interface import Array, Convention, Joint, Slot, Tree, Unsupported
 from .. import turns
 from ..turns import exudyn as turning
-from ..writing.source import Source, SourcePlugin, Way, series
+from ..writing.source import Source, SourcePlugin, Way, series, ways_of
 from . import exudyn_connectors as connectors
 from . import exudyn_systems
 from .exudyn_connectors import connector, end_of, plain
@@ -138,67 +138,43 @@ WAYS: dict[str, Way] = {}
 for _way, _node in _NODES.items():
     _made = f"s = System('{_node}', [])\n"
     _name = f"NodeRigidBody{_node}"
-    WAYS |= {
-        f"mass_matrix{_way}": Way(
-            f"{_name}: ComputeMassMatrix", f"{_made}_, D, _, M, _ = s.at(q, 0 * v)\nvalue = D.T @ M @ D"
-        ),
-        f"bias{_way}": Way(
-            f"{_name}: ComputeODE2RHS", f"{_made}_, D, second, M, f = s.at(q, v)\nvalue = D.T @ (M @ second - f)"
-        ),
-        f"link_poses{_way}": Way(
-            f"{_name}: Position, RotationMatrix",
-            f"{_made}value = s.outputs(q, 0 * v, 0 * v, 'Position', 'RotationMatrix')",
-        ),
-        f"link_velocities{_way}": Way(
-            f"{_name}: Velocity, AngularVelocity",
-            f"{_made}value = s.outputs(q, v, 0 * v, 'Velocity', 'AngularVelocity')",
-        ),
-        f"link_accelerations{_way}": Way(
-            f"{_name}: Acceleration, AngularAcceleration",
-            f"{_made}value = s.outputs(q, v, a, 'Acceleration', 'AngularAcceleration')",
-        ),
-        f"kinetic_energy{_way}": Way(
-            f"{_name}: KineticEnergy", f"{_made}value = np.sum(s.outputs(q, v, 0 * v, 'KineticEnergy'))"
-        ),
-        f"passive_forces{_way}": Way(
-            f"{_name}: spring-dampers, ComputeODE2RHS",
-            f"springs\n{_made}_, D, _, _, alone = s.at(q, v)\n"
-            f"value = D.T @ (System('{_node}', springs).at(q, v)[-1] - alone)",
-        ),
-    }
-WAYS |= {
-    "forward_dynamics": Way(
-        "ObjectJointRevoluteZ, PrismaticX, Spherical", "value = System('EP', special).solved(q, v, tau, 0.1)[0]"
-    ),
-    "forward_dynamics:generic": Way("ObjectJointGeneric", "value = System('EP', generic).solved(q, v, tau, 0.1)[0]"),
-    "forward_dynamics:generic, Rxyz": Way(
-        "ObjectJointGeneric, NodeRigidBodyRxyz",
-        "value = System('Rxyz', generic).solved(q, v, tau, 4e-3)[0]",
-        _DIFFERENCE,
-    ),
-    "constrained_acceleration": Way(
-        "ObjectJointSpherical, Generic, ConnectorDistance",
-        "loops\nvalue = System('EP', special + loops).solved(q, v, tau, 4e-3)[0]",
-        _DIFFERENCE,
-    ),
-    "constrained_acceleration:generic": Way(
-        "ObjectJointGeneric",
-        "loops_generic\nvalue = System('EP', generic + loops_generic).solved(q, v, tau, 4e-3)[0]",
-        _DIFFERENCE,
-    ),
-    # Of the first body's point, in the world.
-    "constraint_forces": Way(
-        "ObjectJointSpherical: Force",
-        "points\nforces = System('EP', special + loops).reactions(q, v, tau, 'Force')\nframes = moved(q, v)\n"
-        "value = np.concatenate([(frames[k][0] @ R if k >= 0 else R).T @ f for (k, R), f in zip(points, forces)])",
-        _DIFFERENCE,
-    ),
-    "constraint_forces:generic": Way(
-        "ObjectJointGeneric: ForceLocal",
-        "points\nvalue = np.concatenate(System('EP', generic + loops_generic).reactions(q, v, tau, 'ForceLocal'))",
-        _DIFFERENCE,
-    ),
-}
+    WAYS |= ways_of(f"""
+== mass_matrix{_way} | {_name}: ComputeMassMatrix | {_made}_, D, _, M, _ = s.at(q, 0 * v)\nvalue = D.T @ M @ D
+== bias{_way} | {_name}: ComputeODE2RHS | {_made}_, D, second, M, f = s.at(q, v)\nvalue = D.T @ (M @ second - f)
+== link_poses{_way} | {_name}: Position, RotationMatrix
+{_made}value = s.outputs(q, 0 * v, 0 * v, 'Position', 'RotationMatrix')
+== link_velocities{_way} | {_name}: Velocity, AngularVelocity
+{_made}value = s.outputs(q, v, 0 * v, 'Velocity', 'AngularVelocity')
+== link_accelerations{_way} | {_name}: Acceleration, AngularAcceleration
+{_made}value = s.outputs(q, v, a, 'Acceleration', 'AngularAcceleration')
+== kinetic_energy{_way} | {_name}: KineticEnergy | {_made}value = np.sum(s.outputs(q, v, 0 * v, 'KineticEnergy'))
+== passive_forces{_way} | {_name}: spring-dampers, ComputeODE2RHS
+springs
+{_made}_, D, _, _, alone = s.at(q, v)
+value = D.T @ (System('{_node}', springs).at(q, v)[-1] - alone)
+""")
+WAYS |= ways_of(f"""
+== forward_dynamics | ObjectJointRevoluteZ, PrismaticX, Spherical
+value = System('EP', special).solved(q, v, tau, 0.1)[0]
+== forward_dynamics:generic | ObjectJointGeneric | value = System('EP', generic).solved(q, v, tau, 0.1)[0]
+== forward_dynamics:generic, Rxyz ~ {_DIFFERENCE} | ObjectJointGeneric, NodeRigidBodyRxyz
+value = System('Rxyz', generic).solved(q, v, tau, 4e-3)[0]
+== constrained_acceleration ~ {_DIFFERENCE} | ObjectJointSpherical, Generic, ConnectorDistance
+loops
+value = System('EP', special + loops).solved(q, v, tau, 4e-3)[0]
+== constrained_acceleration:generic ~ {_DIFFERENCE} | ObjectJointGeneric
+loops_generic
+value = System('EP', generic + loops_generic).solved(q, v, tau, 4e-3)[0]
+== # Of the first body's point, in the world.
+== constraint_forces ~ {_DIFFERENCE} | ObjectJointSpherical: Force
+points
+forces = System('EP', special + loops).reactions(q, v, tau, 'Force')
+frames = moved(q, v)
+value = np.concatenate([(frames[k][0] @ R if k >= 0 else R).T @ f for (k, R), f in zip(points, forces)])
+== constraint_forces:generic ~ {_DIFFERENCE} | ObjectJointGeneric: ForceLocal
+points
+value = np.concatenate(System('EP', generic + loops_generic).reactions(q, v, tau, 'ForceLocal'))
+""")
 _NEEDED = {
     "quaternion": tuple(exudyn_systems.QUATERNION.split("\n")),
     "cross": tuple(exudyn_systems.MOVED.split("\n")),

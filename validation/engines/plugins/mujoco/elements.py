@@ -8,7 +8,7 @@ from collections.abc import Iterable
 import numpy as np
 
 from ...interface import STEP, Actuator, Array, Constraint, End, Joint, Muscle, Tendon, Tree, Wrap, vector
-from ..writing.source import Way
+from ..writing.source import ways_of
 
 KINDS = {
     "point": "equality/connect",
@@ -354,33 +354,27 @@ SOFT_FORCES = 5e-2
 # What is left of loops that are closed but for roundings, times the stiffness of constraints and the step.
 _AT_REST = 1e-9
 
-WAYS = {
-    "constraint_jacobian": Way("efc_J", f"{_AT}{_J}value = axes() @ J"),
-    "constraint_velocity_products": Way("-efc_aref", f"{_AT}value = -axes() @ d.efc_aref"),
-    "constraint_residuals": Way("efc_pos", f"{_AT.replace('= q, v', '= q2, v')}value = d.efc_pos * ways_round()"),
-    "constraint_residual_products": Way(
-        "-efc_aref", f"{_AT.replace('= q, v', '= q2, v')}value = -d.efc_aref * ways_round()"
-    ),
-    "constraint_points": Way("eq_data", "value = m.eq_data[:, :6]"),
-    "wrench_sensors:bound": Way("mj_inverse with constraints, force, torque", BOUND),
-    "step_at_rest": Way(
-        "mj_step",
-        "from copy import copy\nn = copy(m)\n"
-        f"n.opt.gravity[:], n.opt.timestep = 0.0, {STEP}\nd.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, 0.0, 0.0\n"
-        "mj.mj_step(n, d)\nvalue = np.r_[d.qpos, d.qvel]",
-        _AT_REST,
-    ),
-    # Of a row of rotation that of the angular velocity, though the row is of half of it.
-    "constraint_diagonal": Way(
-        "efc_diagApprox, efc_diagA",
-        f"{_AT}value = d.efc_diagApprox if hasattr(d, 'efc_diagApprox') else d.efc_diagA",
-    ),
-    "delassus": Way(
-        "mj_solveM with efc_J",
-        f"{_AT}{_J}X = np.zeros_like(J)\nmj.mj_solveM(m, d, X, J)\nvalue = axes() @ J @ X.T @ axes().T",
-    ),
-    "constrained_acceleration": Way("mj_forward: qacc", f"{_AT}value = d.qacc", SOFT),
-    "constraint_forces": Way(
-        "mj_forward: efc_force", f"{_AT}value = np.linalg.solve(axes().T, d.efc_force)", SOFT_FORCES
-    ),
-}
+WAYS = ways_of(f"""
+== constraint_jacobian | efc_J | {_AT}{_J}value = axes() @ J
+== constraint_velocity_products | -efc_aref | {_AT}value = -axes() @ d.efc_aref
+== constraint_residuals | efc_pos | {_AT.replace("= q, v", "= q2, v")}value = d.efc_pos * ways_round()
+== constraint_residual_products | -efc_aref | {_AT.replace("= q, v", "= q2, v")}value = -d.efc_aref * ways_round()
+== constraint_points | eq_data | value = m.eq_data[:, :6]
+== wrench_sensors:bound | mj_inverse with constraints, force, torque | {BOUND}
+== step_at_rest ~ {_AT_REST} | mj_step
+from copy import copy
+n = copy(m)
+n.opt.gravity[:], n.opt.timestep = 0.0, {STEP}
+d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, 0.0, 0.0
+mj.mj_step(n, d)
+value = np.r_[d.qpos, d.qvel]
+== # Of a row of rotation that of the angular velocity, though the row is of half of it.
+== constraint_diagonal | efc_diagApprox, efc_diagA
+{_AT}value = d.efc_diagApprox if hasattr(d, 'efc_diagApprox') else d.efc_diagA
+== delassus | mj_solveM with efc_J
+{_AT}{_J}X = np.zeros_like(J)
+mj.mj_solveM(m, d, X, J)
+value = axes() @ J @ X.T @ axes().T
+== constrained_acceleration ~ {SOFT} | mj_forward: qacc | {_AT}value = d.qacc
+== constraint_forces ~ {SOFT_FORCES} | mj_forward: efc_force | {_AT}value = np.linalg.solve(axes().T, d.efc_force)
+""")

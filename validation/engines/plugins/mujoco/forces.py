@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from ...interface import STEP, Steps
+from ...interface import STEP
 from ...truth.sensed import WRENCH
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 
 FORCE, MOMENT = list(WRENCH[:3]), list(WRENCH[3:])
 Q = "d.qpos[:] = q\nmj.mj_forward(m, d)\n"
@@ -63,111 +63,98 @@ def _step(integrator: str, settings: str = "") -> Way:
     )
 
 
-WAYS = {
-    "step_dampers_implicit": _step("mjINT_EULER"),
-    "step_semi_implicit": _step("mjINT_EULER", EXPLICIT),
-    "step_velocities_implicit": _step("mjINT_IMPLICIT"),
-    "step_forces_implicit": _step("mjINT_IMPLICITFAST"),
-    "step_velocities_implicit:sparse": _step("mjINT_IMPLICIT", SPARSE),
-    "step_forces_implicit:sparse": _step("mjINT_IMPLICITFAST", SPARSE),
-    "step_dampers_implicit_derivative": Way(
-        "mjd_transitionFD", f"{transition(STEP)}value = A", Steps("step_dampers_implicit", 1e-6, 1e-9)
-    ),
-    "step_dampers_implicit_control_derivative": Way(
-        "mjd_transitionFD", f"{transition(STEP)}value = B[:2 * m.nv]", Steps("step_dampers_implicit", 1e-6, 1e-9)
-    ),
-    # Tendons and actuators that couple joints are solved for by iterations.
-    "step_stiffness_implicit_lone": _step("mjINT_DISCRETE", "n.opt.tolerance = 0.0\n"),
-    "step_rk4_manifold": _step("mjINT_RK4"),
-    "joint_wrenches": Way("mj_rnePostConstraint: cfrc_int", f"{QVA}mj.mj_rnePostConstraint(m, d)\n{_HELD}"),
-    "joint_wrenches_driven": Way(
-        "mj_forward, mj_rnePostConstraint: cfrc_int",
-        f"{_DRIVEN}mj.mj_forward(m, d)\nmj.mj_rnePostConstraint(m, d)\n{_HELD}",
-    ),
-    "subtree_momenta": Way(
-        "mj_subtreeVel",
-        f"{QV}mj.mj_subtreeVel(m, d)\n"
-        "value = [[*(m.body_subtreemass[b] * d.subtree_linvel[b]), *d.subtree_angmom[b]] for b in bs]",
-    ),
-    "accelerometers": Way("accelerometer", f"{_MEASURED}value = [data('accelerometer', k) for k in sensed]"),
-    "gyroscopes": Way("gyro", f"{_MEASURED}value = [data('gyro', k) for k in sensed]"),
-    "velocimeters": Way("velocimeter", f"{_MEASURED}value = [data('velocimeter', k) for k in sensed]"),
-    "wrench_sensors": Way("force, torque", f"{_MEASURED}{_WRENCHES}"),
-    "accelerometers_driven": Way("mj_forward, accelerometer", f"{_DRIVEN}mj.mj_forward(m, d)\n{_ACCELEROMETERS}"),
-    "accelerometers_driven:mj_step2": Way(
-        "mj_step1, mj_step2, accelerometer", f"{_DRIVEN}mj.mj_step1(m, d); mj.mj_step2(m, d)\n{_ACCELEROMETERS}"
-    ),
-    # Other forces before, then forces that are known after the first half of a step only.
-    "accelerometers_driven:mj_step2 again": Way(
-        "mj_step1, mj_step2 with other forces, accelerometer",
-        _DRIVEN_AGAIN + "value = [e.sensor(f'accelerometer{k}').data for k in sensed]",
-    ),
-    "angular_accelerations_driven": Way(
-        "mj_forward, frameangacc", f"{_DRIVEN}mj.mj_forward(m, d)\nvalue = [data('frameangacc', k) for k in sensed]"
-    ),
-    "angular_accelerations_driven:mj_step2 again": Way(
-        "mj_step1, mj_step2 with other forces, frameangacc",
-        _DRIVEN_AGAIN + "value = [e.sensor(f'frameangacc{k}').data for k in sensed]",
-    ),
-    "wrench_sensors_driven": Way("mj_forward, force, torque", f"{_DRIVEN}mj.mj_forward(m, d)\n{_WRENCHES}"),
-    "wrench_sensors_driven:mj_step2 again": Way(
-        "mj_step1, mj_step2 with other forces, force, torque",
-        _DRIVEN_AGAIN + "value = [[*e.sensor(f'force{k}').data, *e.sensor(f'torque{k}').data] for k in sensed]",
-    ),
-    "accelerometers_driven:mj_step": Way("mj_step, accelerometer", f"{_DRIVEN}mj.mj_step(m, d)\n{_ACCELEROMETERS}"),
-    "frame_poses": Way(
-        "site_xpos, site_xmat",
-        f"{Q}own = [m.site(f'o{{k}}').id for k in sensed]\nvalue = np.hstack([d.site_xpos[own], d.site_xmat[own]])",
-    ),
-    "frame_jacobians": Way(
-        "mj_jacSite",
-        f"{Q}value = np.zeros((len(sensed), 6, m.nv))\n"
-        "for J, k in zip(value, sensed): mj.mj_jacSite(m, d, J[:3], J[3:], m.site(f'o{k}').id)",
-    ),
-    "applied_wrenches": Way(
-        "mj_applyFT",
-        f"""{Q}value = np.zeros(m.nv)
+WAYS = (
+    {
+        "step_dampers_implicit": _step("mjINT_EULER"),
+        "step_semi_implicit": _step("mjINT_EULER", EXPLICIT),
+        "step_velocities_implicit": _step("mjINT_IMPLICIT"),
+        "step_forces_implicit": _step("mjINT_IMPLICITFAST"),
+        "step_velocities_implicit:sparse": _step("mjINT_IMPLICIT", SPARSE),
+        "step_forces_implicit:sparse": _step("mjINT_IMPLICITFAST", SPARSE),
+    }
+    | ways_of(f"""
+== step_dampers_implicit_derivative ~ step_dampers_implicit 1e-06 1e-09 | mjd_transitionFD | {transition(STEP)}value = A
+== step_dampers_implicit_control_derivative ~ step_dampers_implicit 1e-06 1e-09 | mjd_transitionFD
+{transition(STEP)}value = B[:2 * m.nv]
+""")
+    | {
+        # Tendons and actuators that couple joints are solved for by iterations.
+        "step_stiffness_implicit_lone": _step("mjINT_DISCRETE", "n.opt.tolerance = 0.0\n"),
+        "step_rk4_manifold": _step("mjINT_RK4"),
+    }
+    | ways_of(f"""
+== joint_wrenches | mj_rnePostConstraint: cfrc_int | {QVA}mj.mj_rnePostConstraint(m, d)\n{_HELD}
+== joint_wrenches_driven | mj_forward, mj_rnePostConstraint: cfrc_int
+{_DRIVEN}mj.mj_forward(m, d)
+mj.mj_rnePostConstraint(m, d)
+{_HELD}
+== subtree_momenta | mj_subtreeVel
+{QV}mj.mj_subtreeVel(m, d)
+value = [[*(m.body_subtreemass[b] * d.subtree_linvel[b]), *d.subtree_angmom[b]] for b in bs]
+== accelerometers | accelerometer | {_MEASURED}value = [data('accelerometer', k) for k in sensed]
+== gyroscopes | gyro | {_MEASURED}value = [data('gyro', k) for k in sensed]
+== velocimeters | velocimeter | {_MEASURED}value = [data('velocimeter', k) for k in sensed]
+== wrench_sensors | force, torque | {_MEASURED}{_WRENCHES}
+== accelerometers_driven | mj_forward, accelerometer | {_DRIVEN}mj.mj_forward(m, d)\n{_ACCELEROMETERS}
+== accelerometers_driven:mj_step2 | mj_step1, mj_step2, accelerometer
+{_DRIVEN}mj.mj_step1(m, d); mj.mj_step2(m, d)
+{_ACCELEROMETERS}
+== # Other forces before, then forces that are known after the first half of a step only.
+== accelerometers_driven:mj_step2 again | mj_step1, mj_step2 with other forces, accelerometer
+{_DRIVEN_AGAIN}value = [e.sensor(f'accelerometer{{k}}').data for k in sensed]
+== angular_accelerations_driven | mj_forward, frameangacc
+{_DRIVEN}mj.mj_forward(m, d)
+value = [data('frameangacc', k) for k in sensed]
+== angular_accelerations_driven:mj_step2 again | mj_step1, mj_step2 with other forces, frameangacc
+{_DRIVEN_AGAIN}value = [e.sensor(f'frameangacc{{k}}').data for k in sensed]
+== wrench_sensors_driven | mj_forward, force, torque | {_DRIVEN}mj.mj_forward(m, d)\n{_WRENCHES}
+== wrench_sensors_driven:mj_step2 again | mj_step1, mj_step2 with other forces, force, torque
+{_DRIVEN_AGAIN}value = [[*e.sensor(f'force{{k}}').data, *e.sensor(f'torque{{k}}').data] for k in sensed]
+== accelerometers_driven:mj_step | mj_step, accelerometer | {_DRIVEN}mj.mj_step(m, d)\n{_ACCELEROMETERS}
+== frame_poses | site_xpos, site_xmat
+{Q}own = [m.site(f'o{{k}}').id for k in sensed]
+value = np.hstack([d.site_xpos[own], d.site_xmat[own]])
+== frame_jacobians | mj_jacSite
+{Q}value = np.zeros((len(sensed), 6, m.nv))
+for J, k in zip(value, sensed): mj.mj_jacSite(m, d, J[:3], J[3:], m.site(f'o{{k}}').id)
+== applied_wrenches | mj_applyFT
+{Q}value = np.zeros(m.nv)
 for k in sensed:
     site = m.site(f'o{{k}}').id
     R = d.site_xmat[site].reshape(3, 3)
-    mj.mj_applyFT(m, d, R @ {FORCE}, R @ {MOMENT}, d.site_xpos[site], m.site_bodyid[site], value)""",
-    ),
-    "flexible_relation": Way("qfrc_passive, mj_step", "value = 1.0 + difference()", 1e-9),
-    "joint_dampings": Way("dof_damping", "value = m.dof_damping"),
-    "joint_limits": Way("jnt_range", "value = m.jnt_range"),
-    "joint_limits_of_some": Way(
-        "jnt_range, jnt_limited", "value = (m.jnt_range * m.jnt_limited[:, np.newaxis])[m.dof_jntid]"
-    ),
-    "joint_frictions": Way("dof_frictionloss", "value = m.dof_frictionloss"),
-    "joint_stiffnesses": Way("jnt_stiffness", "value = m.jnt_stiffness[m.dof_jntid]"),
-    "angular_accelerations": Way("frameangacc", f"{_MEASURED}value = [data('frameangacc', k) for k in sensed]"),
-    "passive_forces": Way("qfrc_passive", f"{QV}value = d.qfrc_passive"),
-    "tendon_lengths": Way("ten_length", f"{QV}value = d.ten_length"),
-    # Entries that are not zero since the model has their places.
-    "tendon_arms": Way(
-        "ten_J",
-        f"{QV}value = np.array(d.ten_J)\n"
-        "if hasattr(m, 'ten_J_rownnz'):\n"
-        "    value = np.zeros((m.ntendon, m.nv))\n"
-        "    mj.mju_sparse2dense(value, np.ravel(d.ten_J), m.ten_J_rownnz, m.ten_J_rowadr, m.ten_J_colind)\n"
-        "value = value.reshape(-1, m.nv)",
-    ),
-    "actuator_lengths": Way("actuator_length", f"{QV}value = d.actuator_length"),
-    "actuator_arms": Way(
-        "actuator_moment",
-        # Rows of entries that are not zero since 3.2.5, which hands them out as a rectangle.
-        f"{QV}value = np.array(d.actuator_moment)\n"
-        "if hasattr(d, 'moment_rownnz'):\n"
-        "    entries, columns = value.ravel(), np.ravel(d.moment_colind)\n"
-        "    value = np.zeros((m.nu, m.nv))\n"
-        "    mj.mju_sparse2dense(value, entries, d.moment_rownnz, d.moment_rowadr, columns)",
-    ),
-    "actuator_forces": Way("actuator_force", f"{QV}value = d.actuator_force"),
-    "activation_rates": Way("act_dot", f"{QV}value = d.act_dot"),
-    "activations_after_step": Way(
-        "mj_step",
-        f"{COPY}n.opt.timestep = {STEP}\nd.qpos[:], d.qvel[:] = q, v\nmj.mj_step(n, d)\n"
-        "value = np.array(d.act)\nd.act[:] = states",
-    ),
-    "actuated_forces": Way("qfrc_actuator", f"{QV}value = d.qfrc_actuator"),
-}
+    mj.mj_applyFT(m, d, R @ {FORCE}, R @ {MOMENT}, d.site_xpos[site], m.site_bodyid[site], value)
+== flexible_relation ~ 1e-09 | qfrc_passive, mj_step | value = 1.0 + difference()
+== joint_dampings | dof_damping | value = m.dof_damping
+== joint_limits | jnt_range | value = m.jnt_range
+== joint_limits_of_some | jnt_range, jnt_limited | value = (m.jnt_range * m.jnt_limited[:, np.newaxis])[m.dof_jntid]
+== joint_frictions | dof_frictionloss | value = m.dof_frictionloss
+== joint_stiffnesses | jnt_stiffness | value = m.jnt_stiffness[m.dof_jntid]
+== angular_accelerations | frameangacc | {_MEASURED}value = [data('frameangacc', k) for k in sensed]
+== passive_forces | qfrc_passive | {QV}value = d.qfrc_passive
+== tendon_lengths | ten_length | {QV}value = d.ten_length
+== # Entries that are not zero since the model has their places.
+== tendon_arms | ten_J
+{QV}value = np.array(d.ten_J)
+if hasattr(m, 'ten_J_rownnz'):
+    value = np.zeros((m.ntendon, m.nv))
+    mj.mju_sparse2dense(value, np.ravel(d.ten_J), m.ten_J_rownnz, m.ten_J_rowadr, m.ten_J_colind)
+value = value.reshape(-1, m.nv)
+== actuator_lengths | actuator_length | {QV}value = d.actuator_length
+== # Rows of entries that are not zero since 3.2.5, which hands them out as a rectangle.
+== actuator_arms | actuator_moment
+{QV}value = np.array(d.actuator_moment)
+if hasattr(d, 'moment_rownnz'):
+    entries, columns = value.ravel(), np.ravel(d.moment_colind)
+    value = np.zeros((m.nu, m.nv))
+    mj.mju_sparse2dense(value, entries, d.moment_rownnz, d.moment_rowadr, columns)
+== actuator_forces | actuator_force | {QV}value = d.actuator_force
+== activation_rates | act_dot | {QV}value = d.act_dot
+== activations_after_step | mj_step
+{COPY}n.opt.timestep = {STEP}
+d.qpos[:], d.qvel[:] = q, v
+mj.mj_step(n, d)
+value = np.array(d.act)
+d.act[:] = states
+== actuated_forces | qfrc_actuator | {QV}value = d.qfrc_actuator
+""")
+)

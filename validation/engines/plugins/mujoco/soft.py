@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 from .forces import COPY
 
 _SET = "d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau\n"
@@ -30,24 +30,21 @@ WAYS = {
         (":projected Gauss-Seidel", "PGS", "DENSE"),
         (":projected Gauss-Seidel, sparse", "PGS", "SPARSE"),
     )
-} | {
-    "limiting_forces": Way("qfrc_constraint", f"{_NEWTON}value = d.qfrc_constraint"),
-    "limiting_forces:mj_mulJacTVec": Way(
-        "efc_force, mj_mulJacTVec", f"{_NEWTON}value = np.zeros(m.nv)\nmj.mj_mulJacTVec(n, d, value, d.efc_force)"
-    ),
-    "limiting_forces:mj_constraintUpdate": Way(
-        "mj_mulJacVec, mj_constraintUpdate",
-        f"{_NEWTON}apart = np.zeros(d.nefc)\nmj.mj_mulJacVec(n, d, apart, d.qacc)\n"
-        "mj.mj_constraintUpdate(n, d, apart - d.efc_aref, None, 0)\nvalue = d.qfrc_constraint",
-    ),
-    "limiting_forces:mj_inverse": Way(
-        "mj_inverse: qfrc_constraint", f"{_NEWTON}mj.mj_inverse(n, d)\nvalue = d.qfrc_constraint"
-    ),
-    "floor_forces": Way(
-        "mj_contactForce",
-        f"{_NEWTON}value, wrench = np.zeros(sum(m.geom(k).name.startswith('g') for k in range(m.ngeom))), np.zeros(6)\n"
-        "for k, one in enumerate(d.contact):\n    mj.mj_contactForce(n, d, k, wrench)\n"
-        "    value[int(m.geom(int(one.geom[1])).name[1:])] = wrench[0]",
-    ),
-    "limited_inverse": Way("mj_inverse", f"{_NEWTON}mj.mj_inverse(n, d)\nvalue = d.qfrc_inverse", _ITERATED),
-}
+} | ways_of(f"""
+== limiting_forces | qfrc_constraint | {_NEWTON}value = d.qfrc_constraint
+== limiting_forces:mj_mulJacTVec | efc_force, mj_mulJacTVec
+{_NEWTON}value = np.zeros(m.nv)
+mj.mj_mulJacTVec(n, d, value, d.efc_force)
+== limiting_forces:mj_constraintUpdate | mj_mulJacVec, mj_constraintUpdate
+{_NEWTON}apart = np.zeros(d.nefc)
+mj.mj_mulJacVec(n, d, apart, d.qacc)
+mj.mj_constraintUpdate(n, d, apart - d.efc_aref, None, 0)
+value = d.qfrc_constraint
+== limiting_forces:mj_inverse | mj_inverse: qfrc_constraint | {_NEWTON}mj.mj_inverse(n, d)\nvalue = d.qfrc_constraint
+== floor_forces | mj_contactForce
+{_NEWTON}value, wrench = np.zeros(sum(m.geom(k).name.startswith('g') for k in range(m.ngeom))), np.zeros(6)
+for k, one in enumerate(d.contact):
+    mj.mj_contactForce(n, d, k, wrench)
+    value[int(m.geom(int(one.geom[1])).name[1:])] = wrench[0]
+== limited_inverse ~ {_ITERATED} | mj_inverse | {_NEWTON}mj.mj_inverse(n, d)\nvalue = d.qfrc_inverse
+""")

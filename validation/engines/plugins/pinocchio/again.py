@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...functions import ALIGNED
 from ...truth.points import POINT
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 from .functions import FRAMES
 from .functions import WAYS as FIRST
 
@@ -64,62 +64,50 @@ def _points() -> dict[str, Way]:
 
 
 _GIVEN = FIRST["applied_wrenches"].code[: FIRST["applied_wrenches"].code.index("value =")]
-WAYS = {
-    "link_accelerations:getClassicalAcceleration": Way(
-        "getClassicalAcceleration",
-        _FK + _JOINTS.format(of="pin.getClassicalAcceleration(m, d, j, pin.LOCAL_WORLD_ALIGNED).vector"),
-    ),
-    "link_accelerations:classicAcceleration": Way(
-        "classicAcceleration",
-        f"{_FK}js\nvalue = np.array([[*(d.oMi[j].rotation @ pin.classicAcceleration(d.v[j], d.a[j])),"
-        " *(d.oMi[j].rotation @ d.a[j].angular)] for j in js])",
-    ),
-    "jacobian_local:computeJointJacobian": Way(
-        "computeJointJacobian", _JOINTS.format(of="pin.computeJointJacobian(m, d, q, j)")
-    ),
-    "integrate_dq:dIntegrateTransport": Way(
-        "dIntegrateTransport", "value = pin.dIntegrateTransport(m, q, v2, np.eye(m.nv), pin.ARG0)"
-    ),
-    "integrate_dv:dIntegrateTransport": Way(
-        "dIntegrateTransport", "value = pin.dIntegrateTransport(m, q, v2, np.eye(m.nv), pin.ARG1)"
-    ),
-    "coordinate_rates:tangentMapTransposeProduct": Way(
-        "tangentMapTransposeProduct", "value = pin.tangentMapTransposeProduct(m, q, np.eye(m.nq)).T @ v"
-    ),
-    "inverse_dynamics:rneaInParallel": Way(
-        "rneaInParallel",
-        "pool = pin.ModelPool(m, 2)\nq2 = pin.neutral(m)\nvalue = pin.rneaInParallel("
-        "2, pool, np.column_stack([q2, q]), np.column_stack([a, v]), np.column_stack([v, a]))[:, 1]",
-    ),
-    "forward_dynamics:abaInParallel": Way(
-        "abaInParallel",
-        "pool = pin.ModelPool(m, 2)\nq2 = pin.neutral(m)\nvalue = pin.abaInParallel("
-        "2, pool, np.column_stack([q2, q]), np.column_stack([tau, v]), np.column_stack([v, tau]))[:, 1]",
-    ),
-    "bias:computeAllTerms": Way("computeAllTerms: nle", _TERMS.format(of="d.nle")),
-    "gravity:computeAllTerms": Way("computeAllTerms: g", _TERMS.format(of="d.g")),
-    "kinetic_energy:computeAllTerms": Way("computeAllTerms: kinetic_energy", _TERMS.format(of="d.kinetic_energy")),
-    "potential_energy:computeAllTerms": Way(
-        "computeAllTerms: potential_energy", _TERMS.format(of="d.potential_energy")
-    ),
-    "centroidal_momentum:computeAllTerms": Way("computeAllTerms: hg", _TERMS.format(of="d.hg.vector")),
-    "mass_centre_velocity:computeAllTerms": Way("computeAllTerms: vcom", _TERMS.format(of="d.vcom[0]")),
-    "link_regressors:frameBodyRegressor": Way(
-        "frameBodyRegressor", "pin.rnea(m, d, q, v, a)\nvalue = [pin.frameBodyRegressor(m, d, f) for f in fs]"
-    ),
-    "link_regressors:bodyRegressor": Way(
-        "bodyRegressor", f"pin.rnea(m, d, q, v, a)\n{_JOINTS.format(of='pin.bodyRegressor(d.v[j], d.a_gf[j])')}"
-    ),
-    "applied_wrenches_dq": Way(
-        "computeStaticTorqueDerivatives",
-        f"{_GIVEN}still = pin.computeGeneralizedGravityDerivatives(m, d, q).copy()\n"
-        "value = still - pin.computeStaticTorqueDerivatives(m, d, q, pin.StdVec_Force(given))",
-    ),
-    "applied_wrenches_dq:computeRNEADerivatives": Way(
-        "computeRNEADerivatives with external forces",
-        f"{_GIVEN}still = pin.computeRNEADerivatives(m, d, q, 0 * v, 0 * v)[0].copy()\n"
-        "value = still - pin.computeRNEADerivatives(m, d, q, 0 * v, 0 * v, pin.StdVec_Force(given))[0]",
-    ),
-} | _points()
+WAYS = (
+    ways_of(f"""
+== link_accelerations:getClassicalAcceleration | getClassicalAcceleration
+{_FK}{_JOINTS.format(of="pin.getClassicalAcceleration(m, d, j, pin.LOCAL_WORLD_ALIGNED).vector")}
+== link_accelerations:classicAcceleration | classicAcceleration
+{_FK}js
+value = np.array([[*(d.oMi[j].rotation @ pin.classicAcceleration(d.v[j], d.a[j])), *(d.oMi[j].rotation @ \
+d.a[j].angular)] for j in js])
+== jacobian_local:computeJointJacobian | computeJointJacobian
+{_JOINTS.format(of="pin.computeJointJacobian(m, d, q, j)")}
+== integrate_dq:dIntegrateTransport | dIntegrateTransport
+value = pin.dIntegrateTransport(m, q, v2, np.eye(m.nv), pin.ARG0)
+== integrate_dv:dIntegrateTransport | dIntegrateTransport
+value = pin.dIntegrateTransport(m, q, v2, np.eye(m.nv), pin.ARG1)
+== coordinate_rates:tangentMapTransposeProduct | tangentMapTransposeProduct
+value = pin.tangentMapTransposeProduct(m, q, np.eye(m.nq)).T @ v
+== inverse_dynamics:rneaInParallel | rneaInParallel
+pool = pin.ModelPool(m, 2)
+q2 = pin.neutral(m)
+value = pin.rneaInParallel(2, pool, np.column_stack([q2, q]), np.column_stack([a, v]), np.column_stack([v, a]))[:, 1]
+== forward_dynamics:abaInParallel | abaInParallel
+pool = pin.ModelPool(m, 2)
+q2 = pin.neutral(m)
+value = pin.abaInParallel(2, pool, np.column_stack([q2, q]), np.column_stack([tau, v]), np.column_stack([v, tau]))[:, 1]
+== bias:computeAllTerms | computeAllTerms: nle | {_TERMS.format(of="d.nle")}
+== gravity:computeAllTerms | computeAllTerms: g | {_TERMS.format(of="d.g")}
+== kinetic_energy:computeAllTerms | computeAllTerms: kinetic_energy | {_TERMS.format(of="d.kinetic_energy")}
+== potential_energy:computeAllTerms | computeAllTerms: potential_energy | {_TERMS.format(of="d.potential_energy")}
+== centroidal_momentum:computeAllTerms | computeAllTerms: hg | {_TERMS.format(of="d.hg.vector")}
+== mass_centre_velocity:computeAllTerms | computeAllTerms: vcom | {_TERMS.format(of="d.vcom[0]")}
+== link_regressors:frameBodyRegressor | frameBodyRegressor
+pin.rnea(m, d, q, v, a)
+value = [pin.frameBodyRegressor(m, d, f) for f in fs]
+== link_regressors:bodyRegressor | bodyRegressor
+pin.rnea(m, d, q, v, a)
+{_JOINTS.format(of="pin.bodyRegressor(d.v[j], d.a_gf[j])")}
+== applied_wrenches_dq | computeStaticTorqueDerivatives
+{_GIVEN}still = pin.computeGeneralizedGravityDerivatives(m, d, q).copy()
+value = still - pin.computeStaticTorqueDerivatives(m, d, q, pin.StdVec_Force(given))
+== applied_wrenches_dq:computeRNEADerivatives | computeRNEADerivatives with external forces
+{_GIVEN}still = pin.computeRNEADerivatives(m, d, q, 0 * v, 0 * v)[0].copy()
+value = still - pin.computeRNEADerivatives(m, d, q, 0 * v, 0 * v, pin.StdVec_Force(given))[0]
+""")
+    | _points()
+)
 for _frame, _rf in FRAMES.items():
     WAYS |= _of_joints(_frame, _rf)

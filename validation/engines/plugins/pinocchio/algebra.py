@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...truth.geometry.poses import MOMENTS
-from ..writing.source import Way
+from ..writing.source import ways_of
 from .poses import EYE, FLAT, INERTIA, TWIST, TWO
 
 _F = "F = pin.Force(a, tau)\n"
@@ -16,164 +16,119 @@ _SE3 = "G, x, y = pin.liegroups.SE3(), np.r_[a, q], np.r_[tau, q2]\n"
 _SO3 = "G = pin.liegroups.SO3()\n"
 _OF_X = "value = {of}.ravel()"
 
-WAYS = {
-    "wrench_cross": Way("Motion.dualAction", f"{TWIST}value = V.dualAction"),
-    "wrench_cross:cross": Way("Motion.cross of forces", f"{TWIST}value = {EYE.format(of='V.cross(pin.Force(e))')}"),
-    "twist_cross:^": Way("Motion ^ Motion", f"{TWIST}value = {EYE.format(of='(V ^ pin.Motion(e))')}"),
-    "wrench_transform_back": Way("SE3.actInv of forces", f"{TWO}value = {EYE.format(of='X.actInv(pin.Force(e))')}"),
-    "power": Way("Motion.dot", f"{TWIST}{_F}value = [V.dot(F)]"),
-    "power:Force": Way("Force.dot", f"{TWIST}{_F}value = [F.dot(V)]"),
-    "body_energy": Way("Inertia.vtiv", f"{INERTIA}{TWIST}value = [I.vtiv(V) / 2]"),
-    "inertia_parameters": Way("Inertia.toDynamicParameters", f"{INERTIA}value = I.toDynamicParameters()"),
-    "inertia_parameters:PseudoInertia": Way(
-        "PseudoInertia.toDynamicParameters", f"{INERTIA}value = I.toPseudoInertia().toDynamicParameters()"
-    ),
-    "pseudo_inertia": Way("Inertia.toPseudoInertia", f"{INERTIA}value = I.toPseudoInertia().toMatrix()"),
-    "pseudo_inertia:FromInertia": Way(
-        "PseudoInertia.FromInertia",
-        f"{INERTIA}P = pin.PseudoInertia.FromInertia(I)\n"
-        "value = np.block([[P.sigma, P.h.reshape(3, 1)], [P.h.reshape(1, 3), np.array([[P.mass]])]])",
-    ),
-    "pseudo_inertia:FromDynamicParameters": Way(
-        "PseudoInertia.FromDynamicParameters",
-        f"{INERTIA}value = pin.PseudoInertia.FromDynamicParameters(I.toDynamicParameters()).toMatrix()",
-    ),
-    "spatial_inertia:PseudoInertia": Way(
-        "PseudoInertia.FromMatrix, toInertia",
-        f"{INERTIA}value = pin.PseudoInertia.FromMatrix(I.toPseudoInertia().toMatrix()).toInertia().matrix()",
-    ),
-    "spatial_inertia_sum:-": Way(
-        "Inertia - Inertia",
-        f"{TWO}{INERTIA}J = I.se3Action(X)\nvalue = ((I + J + I) - I).matrix()",
-    ),
-    "spatial_inertia_inverse": Way("Inertia.inverse", f"{INERTIA}value = I.inverse()"),
-    "momentum_rate_regressor": Way("bodyRegressor", f"{TWIST}A = pin.Motion(a, tau)\nvalue = pin.bodyRegressor(V, A)"),
-    "logarithmic_inertia": Way(
-        "Inertia.FromLogCholeskyParameters", f"{_LOG}value = pin.Inertia.FromLogCholeskyParameters(C).matrix()"
-    ),
-    "logarithmic_inertia:toInertia": Way("LogCholeskyParameters.toInertia", f"{_LOG}value = C.toInertia().matrix()"),
-    "logarithmic_inertia:toPseudoInertia": Way(
-        "LogCholeskyParameters.toPseudoInertia", f"{_LOG}value = C.toPseudoInertia().toInertia().matrix()"
-    ),
-    "logarithmic_parameters": Way(
-        "LogCholeskyParameters.toDynamicParameters", f"{_LOG}value = C.toDynamicParameters()"
-    ),
-    "logarithmic_derivatives": Way("LogCholeskyParameters.calculateJacobian", f"{_LOG}value = C.calculateJacobian()"),
-    "moments_product": Way("Symmetric3 * vector", f"{_S}value = S * v"),
-    "moments_along": Way("Symmetric3.vtiv", f"{_S}value = [S.vtiv(v)]"),
-    "moments_rotated": Way("Symmetric3.rotate", f"{_R}{_S}value = S.rotate(R.matrix()).matrix()"),
-    "cross_matrix": Way("skew", "value = pin.skew(v)"),
-    "cross_matrix:unSkew": Way("unSkew", "value = np.cross(pin.unSkew(pin.skew(v)), np.eye(3)).T"),
-    "cross_matrices": Way("skewSquare", "value = pin.skewSquare(v, a)"),
-    "turned_vector": Way("Quaternion * vector", f"{_R}value = R * v"),
-    "turned_vector:AngleAxis": Way("AngleAxis * vector", f"{_ANGLE}value = R * v"),
-    "turned_vector:SE3": Way("SE3.act", f"{_R}value = pin.SE3(R, a).act(v) - a"),
-    "rotation_inverse": Way("Quaternion.inverse", f"{_R}{_OF_X.format(of='R.inverse().matrix()')}"),
-    "rotation_inverse:conjugate": Way("Quaternion.conjugate", f"{_R}{_OF_X.format(of='R.conjugate().matrix()')}"),
-    "rotation_inverse:AngleAxis": Way("AngleAxis.inverse", f"{_ANGLE}{_OF_X.format(of='R.inverse().matrix()')}"),
-    "rotation_matrix:normalized": Way(
-        "Quaternion.normalized", f"R = pin.Quaternion(2 * q).normalized()\n{_OF_X.format(of='R.matrix()')}"
-    ),
-    "rotation_matrix:normalize": Way(
-        "Quaternion.normalize", f"R = pin.Quaternion(2 * q)\nR.normalize()\n{_OF_X.format(of='R.matrix()')}"
-    ),
-    "rotation_matrix:coeffs": Way("Quaternion.coeffs", f"{_R}{_OF_X.format(of='pin.Quaternion(R.coeffs()).matrix()')}"),
-    "rotation_matrix:four numbers": Way(
-        "Quaternion of w, x, y, z", f"R = pin.Quaternion(q[3], *q[:3])\n{_OF_X.format(of='R.matrix()')}"
-    ),
-    "rotation_matrix:AngleAxis": Way(
-        "AngleAxis.toRotationMatrix", f"{_ANGLE}{_OF_X.format(of='R.toRotationMatrix()')}"
-    ),
-    "rotation_matrix:fromRotationMatrix": Way(
-        "AngleAxis.fromRotationMatrix",
-        f"{_R}X = pin.AngleAxis(0.5, np.eye(3)[0])\nX.fromRotationMatrix(R.matrix())\n{_OF_X.format(of='X.matrix()')}",
-    ),
-    "rotation_of_z:setFromTwoVectors": Way(
-        "Quaternion.setFromTwoVectors",
-        "R = pin.Quaternion(0.0, 1.0, 0.0, 0.0)\nR.setFromTwoVectors(np.eye(3)[2], v + [4.0, -8.0, 8.0])\n"
-        f"{_OF_X.format(of='R.matrix()')}",
-    ),
-    "rotation_of_rpy:rotate": Way(
-        "rpy.rotate",
-        f"{_RPY}value = (rpy.rotate('z', v[2]) @ rpy.rotate('y', v[1]) @ rpy.rotate('x', v[0])).ravel()",
-    ),
-    "rotation_of_rpy:utils": Way(
-        "utils.rotate",
-        "from pinocchio.utils import rotate\n"
-        "value = (rotate('z', v[2]) @ rotate('y', v[1]) @ rotate('x', v[0])).ravel()",
-    ),
-    "rotation_of_rpy:three angles": Way("rpy.rpyToMatrix", f"{_RPY}value = rpy.rpyToMatrix(*v).ravel()"),
-    "rotation_of_rpy:Jacobian": Way(
-        "rpy.computeRpyJacobian, LOCAL_WORLD_ALIGNED and LOCAL",
-        f"{_RPY}J = [rpy.computeRpyJacobian(v, one) for one in (pin.LOCAL_WORLD_ALIGNED, pin.LOCAL)]\n"
-        "value = (J[0] @ np.linalg.inv(J[1])).ravel()",
-    ),
-    "rpy_rates:WORLD": Way(
-        "rpy.computeRpyJacobianInverse, WORLD", f"{_RPY}value = rpy.computeRpyJacobianInverse(v, pin.WORLD)"
-    ),
-    "rpy_rates_turned": Way(
-        "rpy.computeRpyJacobianInverse, LOCAL", f"{_RPY}value = rpy.computeRpyJacobianInverse(v, pin.LOCAL)"
-    ),
-    "rpy_rates_turned:computeRpyJacobian": Way(
-        "rpy.computeRpyJacobian, LOCAL", f"{_RPY}value = np.linalg.inv(rpy.computeRpyJacobian(v, pin.LOCAL))"
-    ),
-    "rpy_rates_turned_rate": Way(
-        "rpy.computeRpyJacobianTimeDerivative, LOCAL",
-        f"{_RPY}B = rpy.computeRpyJacobianInverse(v, pin.LOCAL)\n"
-        "value = -B @ rpy.computeRpyJacobianTimeDerivative(v, a, pin.LOCAL) @ B",
-    ),
-    "rotation_vector_rates_along": Way("Hlog3", f"{_R}value = pin.Hlog3(R.matrix(), v)"),
-    "rotation_exponential:exp": Way("exp", "value = pin.exp(v).ravel()"),
-    "rotation_logarithm:log": Way("log", f"{_R}value = pin.log(R.matrix())"),
-    "pose_exponential:exp": Way("exp of a motion", f"{TWIST}{FLAT.format(of='pin.exp(V)')}"),
-    "pose_exponential:vector": Way("exp6 of a vector", FLAT.format(of="pin.exp6(np.r_[v, v2])")),
-    "pose_logarithm:log": Way("log of a placement", f"{TWO}value = pin.log(X).vector"),
-    "pose_composed:XYZQUAT": Way(
-        "SE3ToXYZQUAT, SE3ToXYZQUATtuple, XYZQUATToSE3",
-        f"{TWO}Y = pin.XYZQUATToSE3(pin.SE3ToXYZQUATtuple(Y))\n"
-        f"{FLAT.format(of='pin.XYZQUATToSE3(pin.SE3ToXYZQUAT(X)) * Y')}",
-    ),
-    "pose_composed:homogeneous": Way(
-        "SE3.homogeneous, SE3 of a matrix", f"{TWO}{FLAT.format(of='pin.SE3(X.homogeneous @ Y.homogeneous)')}"
-    ),
-    "pose_unset": Way("SE3.Identity", FLAT.format(of="pin.SE3.Identity()")),
-    "pose_unset:setIdentity": Way("SE3.setIdentity", f"{TWO}X.setIdentity()\n{FLAT.format(of='X')}"),
-    "twist_transform:toActionMatrix": Way("SE3.toActionMatrix", f"{TWO}value = X.toActionMatrix()"),
-    "twist_transform:se3Action": Way("Motion.se3Action", f"{TWO}value = {EYE.format(of='pin.Motion(e).se3Action(X)')}"),
-    "twist_transform_back:toActionMatrixInverse": Way(
-        "SE3.toActionMatrixInverse", f"{TWO}value = X.toActionMatrixInverse()"
-    ),
-    "twist_transform_back:se3ActionInverse": Way(
-        "Motion.se3ActionInverse", f"{TWO}value = {EYE.format(of='pin.Motion(e).se3ActionInverse(X)')}"
-    ),
-    "wrench_transform:toDualActionMatrix": Way("SE3.toDualActionMatrix", f"{TWO}value = X.toDualActionMatrix()"),
-    "wrench_transform:se3Action": Way("Force.se3Action", f"{TWO}value = {EYE.format(of='pin.Force(e).se3Action(X)')}"),
-    "wrench_transform_back:se3ActionInverse": Way(
-        "Force.se3ActionInverse", f"{TWO}value = {EYE.format(of='pin.Force(e).se3ActionInverse(X)')}"
-    ),
-    "rotation_difference": Way("liegroups.SO3.difference", f"{_SO3}value = G.difference(q, q2)"),
-    "rotation_difference_dq": Way("liegroups.SO3.dDifference", f"{_SO3}value = G.dDifference(q, q2, pin.ARG0)"),
-    "rotation_difference_dq2": Way("liegroups.SO3.dDifference", f"{_SO3}value = G.dDifference(q, q2, pin.ARG1)"),
-    "rotation_squared_distance": Way("liegroups.SO3.squaredDistance", f"{_SO3}value = [G.squaredDistance(q, q2)]"),
-    "rotation_integrated": Way(
-        "liegroups.SO3.integrate", f"{_SO3}value = pin.Quaternion(G.integrate(q, v)).matrix().ravel()"
-    ),
-    "rotation_integrated_dq": Way("liegroups.SO3.dIntegrate_dq", f"{_SO3}value = G.dIntegrate_dq(q, v)"),
-    "rotation_vector_speeds:SO3": Way("liegroups.SO3.dIntegrate_dv", f"{_SO3}value = G.dIntegrate_dv(q, tau)"),
-    "rotation_halfway:SO3": Way(
-        "liegroups.SO3.interpolate", f"{_SO3}value = pin.Quaternion(G.interpolate(q, q2, 0.25)).matrix().ravel()"
-    ),
-    "pose_difference_dq": Way("liegroups.SE3.dDifference", f"{_SE3}value = G.dDifference(x, y, pin.ARG0)"),
-    "pose_difference_dq2": Way("liegroups.SE3.dDifference", f"{_SE3}value = G.dDifference(x, y, pin.ARG1)"),
-    "pose_squared_distance": Way("liegroups.SE3.squaredDistance", f"{_SE3}value = [G.squaredDistance(x, y)]"),
-    "pose_integrated": Way(
-        "liegroups.SE3.integrate", f"{_SE3}{FLAT.format(of='pin.XYZQUATToSE3(G.integrate(x, np.r_[v, v2]))')}"
-    ),
-    "pose_integrated_dq": Way("liegroups.SE3.dIntegrate_dq", f"{_SE3}value = G.dIntegrate_dq(x, np.r_[v, v2])"),
-    "pose_exponential_speeds:SE3": Way(
-        "liegroups.SE3.dIntegrate_dv", f"{_SE3}value = G.dIntegrate_dv(x, np.r_[v, v2])"
-    ),
-    "pose_halfway:SE3": Way(
-        "liegroups.SE3.interpolate", f"{_SE3}{FLAT.format(of='pin.XYZQUATToSE3(G.interpolate(x, y, 0.25))')}"
-    ),
-}
+WAYS = ways_of(f"""
+== wrench_cross | Motion.dualAction | {TWIST}value = V.dualAction
+== wrench_cross:cross | Motion.cross of forces | {TWIST}value = {EYE.format(of="V.cross(pin.Force(e))")}
+== twist_cross:^ | Motion ^ Motion | {TWIST}value = {EYE.format(of="(V ^ pin.Motion(e))")}
+== wrench_transform_back | SE3.actInv of forces | {TWO}value = {EYE.format(of="X.actInv(pin.Force(e))")}
+== power | Motion.dot | {TWIST}{_F}value = [V.dot(F)]
+== power:Force | Force.dot | {TWIST}{_F}value = [F.dot(V)]
+== body_energy | Inertia.vtiv | {INERTIA}{TWIST}value = [I.vtiv(V) / 2]
+== inertia_parameters | Inertia.toDynamicParameters | {INERTIA}value = I.toDynamicParameters()
+== inertia_parameters:PseudoInertia | PseudoInertia.toDynamicParameters
+{INERTIA}value = I.toPseudoInertia().toDynamicParameters()
+== pseudo_inertia | Inertia.toPseudoInertia | {INERTIA}value = I.toPseudoInertia().toMatrix()
+== pseudo_inertia:FromInertia | PseudoInertia.FromInertia
+{INERTIA}P = pin.PseudoInertia.FromInertia(I)
+value = np.block([[P.sigma, P.h.reshape(3, 1)], [P.h.reshape(1, 3), np.array([[P.mass]])]])
+== pseudo_inertia:FromDynamicParameters | PseudoInertia.FromDynamicParameters
+{INERTIA}value = pin.PseudoInertia.FromDynamicParameters(I.toDynamicParameters()).toMatrix()
+== spatial_inertia:PseudoInertia | PseudoInertia.FromMatrix, toInertia
+{INERTIA}value = pin.PseudoInertia.FromMatrix(I.toPseudoInertia().toMatrix()).toInertia().matrix()
+== spatial_inertia_sum:- | Inertia - Inertia | {TWO}{INERTIA}J = I.se3Action(X)\nvalue = ((I + J + I) - I).matrix()
+== spatial_inertia_inverse | Inertia.inverse | {INERTIA}value = I.inverse()
+== momentum_rate_regressor | bodyRegressor | {TWIST}A = pin.Motion(a, tau)\nvalue = pin.bodyRegressor(V, A)
+== logarithmic_inertia | Inertia.FromLogCholeskyParameters
+{_LOG}value = pin.Inertia.FromLogCholeskyParameters(C).matrix()
+== logarithmic_inertia:toInertia | LogCholeskyParameters.toInertia | {_LOG}value = C.toInertia().matrix()
+== logarithmic_inertia:toPseudoInertia | LogCholeskyParameters.toPseudoInertia
+{_LOG}value = C.toPseudoInertia().toInertia().matrix()
+== logarithmic_parameters | LogCholeskyParameters.toDynamicParameters | {_LOG}value = C.toDynamicParameters()
+== logarithmic_derivatives | LogCholeskyParameters.calculateJacobian | {_LOG}value = C.calculateJacobian()
+== moments_product | Symmetric3 * vector | {_S}value = S * v
+== moments_along | Symmetric3.vtiv | {_S}value = [S.vtiv(v)]
+== moments_rotated | Symmetric3.rotate | {_R}{_S}value = S.rotate(R.matrix()).matrix()
+== cross_matrix | skew | value = pin.skew(v)
+== cross_matrix:unSkew | unSkew | value = np.cross(pin.unSkew(pin.skew(v)), np.eye(3)).T
+== cross_matrices | skewSquare | value = pin.skewSquare(v, a)
+== turned_vector | Quaternion * vector | {_R}value = R * v
+== turned_vector:AngleAxis | AngleAxis * vector | {_ANGLE}value = R * v
+== turned_vector:SE3 | SE3.act | {_R}value = pin.SE3(R, a).act(v) - a
+== rotation_inverse | Quaternion.inverse | {_R}{_OF_X.format(of="R.inverse().matrix()")}
+== rotation_inverse:conjugate | Quaternion.conjugate | {_R}{_OF_X.format(of="R.conjugate().matrix()")}
+== rotation_inverse:AngleAxis | AngleAxis.inverse | {_ANGLE}{_OF_X.format(of="R.inverse().matrix()")}
+== rotation_matrix:normalized | Quaternion.normalized
+R = pin.Quaternion(2 * q).normalized()
+{_OF_X.format(of="R.matrix()")}
+== rotation_matrix:normalize | Quaternion.normalize
+R = pin.Quaternion(2 * q)
+R.normalize()
+{_OF_X.format(of="R.matrix()")}
+== rotation_matrix:coeffs | Quaternion.coeffs | {_R}{_OF_X.format(of="pin.Quaternion(R.coeffs()).matrix()")}
+== rotation_matrix:four numbers | Quaternion of w, x, y, z
+R = pin.Quaternion(q[3], *q[:3])
+{_OF_X.format(of="R.matrix()")}
+== rotation_matrix:AngleAxis | AngleAxis.toRotationMatrix | {_ANGLE}{_OF_X.format(of="R.toRotationMatrix()")}
+== rotation_matrix:fromRotationMatrix | AngleAxis.fromRotationMatrix
+{_R}X = pin.AngleAxis(0.5, np.eye(3)[0])
+X.fromRotationMatrix(R.matrix())
+{_OF_X.format(of="X.matrix()")}
+== rotation_of_z:setFromTwoVectors | Quaternion.setFromTwoVectors
+R = pin.Quaternion(0.0, 1.0, 0.0, 0.0)
+R.setFromTwoVectors(np.eye(3)[2], v + [4.0, -8.0, 8.0])
+{_OF_X.format(of="R.matrix()")}
+== rotation_of_rpy:rotate | rpy.rotate
+{_RPY}value = (rpy.rotate('z', v[2]) @ rpy.rotate('y', v[1]) @ rpy.rotate('x', v[0])).ravel()
+== rotation_of_rpy:utils | utils.rotate
+from pinocchio.utils import rotate
+value = (rotate('z', v[2]) @ rotate('y', v[1]) @ rotate('x', v[0])).ravel()
+== rotation_of_rpy:three angles | rpy.rpyToMatrix | {_RPY}value = rpy.rpyToMatrix(*v).ravel()
+== rotation_of_rpy:Jacobian | rpy.computeRpyJacobian, LOCAL_WORLD_ALIGNED and LOCAL
+{_RPY}J = [rpy.computeRpyJacobian(v, one) for one in (pin.LOCAL_WORLD_ALIGNED, pin.LOCAL)]
+value = (J[0] @ np.linalg.inv(J[1])).ravel()
+== rpy_rates:WORLD | rpy.computeRpyJacobianInverse, WORLD | {_RPY}value = rpy.computeRpyJacobianInverse(v, pin.WORLD)
+== rpy_rates_turned | rpy.computeRpyJacobianInverse, LOCAL | {_RPY}value = rpy.computeRpyJacobianInverse(v, pin.LOCAL)
+== rpy_rates_turned:computeRpyJacobian | rpy.computeRpyJacobian, LOCAL
+{_RPY}value = np.linalg.inv(rpy.computeRpyJacobian(v, pin.LOCAL))
+== rpy_rates_turned_rate | rpy.computeRpyJacobianTimeDerivative, LOCAL
+{_RPY}B = rpy.computeRpyJacobianInverse(v, pin.LOCAL)
+value = -B @ rpy.computeRpyJacobianTimeDerivative(v, a, pin.LOCAL) @ B
+== rotation_vector_rates_along | Hlog3 | {_R}value = pin.Hlog3(R.matrix(), v)
+== rotation_exponential:exp | exp | value = pin.exp(v).ravel()
+== rotation_logarithm:log | log | {_R}value = pin.log(R.matrix())
+== pose_exponential:exp | exp of a motion | {TWIST}{FLAT.format(of="pin.exp(V)")}
+== pose_exponential:vector | exp6 of a vector | {FLAT.format(of="pin.exp6(np.r_[v, v2])")}
+== pose_logarithm:log | log of a placement | {TWO}value = pin.log(X).vector
+== pose_composed:XYZQUAT | SE3ToXYZQUAT, SE3ToXYZQUATtuple, XYZQUATToSE3
+{TWO}Y = pin.XYZQUATToSE3(pin.SE3ToXYZQUATtuple(Y))
+{FLAT.format(of="pin.XYZQUATToSE3(pin.SE3ToXYZQUAT(X)) * Y")}
+== pose_composed:homogeneous | SE3.homogeneous, SE3 of a matrix
+{TWO}{FLAT.format(of="pin.SE3(X.homogeneous @ Y.homogeneous)")}
+== pose_unset | SE3.Identity | {FLAT.format(of="pin.SE3.Identity()")}
+== pose_unset:setIdentity | SE3.setIdentity | {TWO}X.setIdentity()\n{FLAT.format(of="X")}
+== twist_transform:toActionMatrix | SE3.toActionMatrix | {TWO}value = X.toActionMatrix()
+== twist_transform:se3Action | Motion.se3Action | {TWO}value = {EYE.format(of="pin.Motion(e).se3Action(X)")}
+== twist_transform_back:toActionMatrixInverse | SE3.toActionMatrixInverse | {TWO}value = X.toActionMatrixInverse()
+== twist_transform_back:se3ActionInverse | Motion.se3ActionInverse
+{TWO}value = {EYE.format(of="pin.Motion(e).se3ActionInverse(X)")}
+== wrench_transform:toDualActionMatrix | SE3.toDualActionMatrix | {TWO}value = X.toDualActionMatrix()
+== wrench_transform:se3Action | Force.se3Action | {TWO}value = {EYE.format(of="pin.Force(e).se3Action(X)")}
+== wrench_transform_back:se3ActionInverse | Force.se3ActionInverse
+{TWO}value = {EYE.format(of="pin.Force(e).se3ActionInverse(X)")}
+== rotation_difference | liegroups.SO3.difference | {_SO3}value = G.difference(q, q2)
+== rotation_difference_dq | liegroups.SO3.dDifference | {_SO3}value = G.dDifference(q, q2, pin.ARG0)
+== rotation_difference_dq2 | liegroups.SO3.dDifference | {_SO3}value = G.dDifference(q, q2, pin.ARG1)
+== rotation_squared_distance | liegroups.SO3.squaredDistance | {_SO3}value = [G.squaredDistance(q, q2)]
+== rotation_integrated | liegroups.SO3.integrate | {_SO3}value = pin.Quaternion(G.integrate(q, v)).matrix().ravel()
+== rotation_integrated_dq | liegroups.SO3.dIntegrate_dq | {_SO3}value = G.dIntegrate_dq(q, v)
+== rotation_vector_speeds:SO3 | liegroups.SO3.dIntegrate_dv | {_SO3}value = G.dIntegrate_dv(q, tau)
+== rotation_halfway:SO3 | liegroups.SO3.interpolate
+{_SO3}value = pin.Quaternion(G.interpolate(q, q2, 0.25)).matrix().ravel()
+== pose_difference_dq | liegroups.SE3.dDifference | {_SE3}value = G.dDifference(x, y, pin.ARG0)
+== pose_difference_dq2 | liegroups.SE3.dDifference | {_SE3}value = G.dDifference(x, y, pin.ARG1)
+== pose_squared_distance | liegroups.SE3.squaredDistance | {_SE3}value = [G.squaredDistance(x, y)]
+== pose_integrated | liegroups.SE3.integrate | {_SE3}{FLAT.format(of="pin.XYZQUATToSE3(G.integrate(x, np.r_[v, v2]))")}
+== pose_integrated_dq | liegroups.SE3.dIntegrate_dq | {_SE3}value = G.dIntegrate_dq(x, np.r_[v, v2])
+== pose_exponential_speeds:SE3 | liegroups.SE3.dIntegrate_dv | {_SE3}value = G.dIntegrate_dv(x, np.r_[v, v2])
+== pose_halfway:SE3 | liegroups.SE3.interpolate | {_SE3}{FLAT.format(of="pin.XYZQUATToSE3(G.interpolate(x, y, 0.25))")}
+""")

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Callable, Iterator, Mapping
 
 from ...interface import Constraint, End
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 
 KINDS = {"point": "RigidConstraintModel, CONTACT_3D", "weld": "RigidConstraintModel, CONTACT_6D"}
 _TYPES = {"point": "CONTACT_3D", "weld": "CONTACT_6D"}
@@ -59,68 +59,47 @@ _DAMPED = 1e-7
 # What mu = 1e-12 makes of a matrix whose entries are of order one, or of its inverse.
 _REGULAR = 1e-9
 
-WAYS = {
-    "constraint_jacobian": Way("getConstraintsJacobian", f"{_JACOBIAN}value = J"),
-    "constraint_jacobian:anchors": Way(
-        "getConstraintsJacobian of anchors",
-        "ad = pin.StdVec_ConstraintData([one.createData() for one in am])\n"
-        "pin.computeJointJacobians(m, d, q)\nfor one, data in zip(am, ad): one.calc(m, d, data)\n"
-        "value = -pin.getConstraintsJacobian(m, d, am, ad)",
-    ),
-    "delassus": Way("computeDelassusMatrix", f"{_DATA}value = pin.computeDelassusMatrix(m, d, q, cm, cd, 0.0)"),
-    "delassus:ContactCholesky": Way(
-        "getInverseOperationalSpaceInertiaMatrix",
-        f"{_CHOLESKY}value = C.getInverseOperationalSpaceInertiaMatrix()",
-        _REGULAR,
-    ),
-    "delassus_inverse_damped": Way(
-        "computeDampedDelassusMatrixInverse",
-        f"{_DATA}value = pin.computeDampedDelassusMatrixInverse(m, d, q, cm, cd, 1e-4, True) / 1e-4",
-        _DAMPED,
-    ),
-    "delassus_inverse": Way(
-        "getOperationalSpaceInertiaMatrix", f"{_CHOLESKY}value = C.getOperationalSpaceInertiaMatrix()", _REGULAR
-    ),
-    "kkt_inverse": Way(
-        "computeKKTContactDynamicMatrixInverse",
-        f"{_JACOBIAN}value = pin.computeKKTContactDynamicMatrixInverse(m, d, q, J, 0.0)",
-    ),
-    "kkt_inverse:ContactCholesky": Way(
-        "ContactCholeskyDecomposition.inverse",
-        f"{_CHOLESKY}value = np.roll(C.inverse(), (m.nv, m.nv), (0, 1))",
-        _REGULAR,
-    ),
-    "constrained_acceleration": Way("constraintDynamics", _DYNAMICS),
-    "constrained_acceleration:proximal": Way(
-        "constraintDynamics, mu = 1e-6",
-        f"{_SOLVED}ps = pin.ProximalSettings(1e-13, 1e-6, 100)\n"
-        "value = pin.constraintDynamics(m, d, q, v, tau, cm, cd, ps)",
-        _PROXIMAL,
-    ),
-    "constrained_acceleration:lcaba": Way(
-        "lcaba, mu = 1e-6",
-        f"{_SOLVED}ps = pin.ProximalSettings(1e-13, 1e-6, 100)\npin.computeJointMinimalOrdering(m, d, cm)\n"
-        "value = pin.lcaba(m, d, q, v, tau, cm, cd, ps)",
-        _PROXIMAL,
-    ),
-    "constraint_forces": Way("constraintDynamics: lambda_c", f"{_DYNAMICS}value = d.lambda_c"),
-    "impact_velocity": Way("impulseDynamics", f"{_IMPACT}0.0, ps)", _REGULAR),
-    "impact_velocity_rebound": Way("impulseDynamics", f"{_IMPACT}0.5, ps)", _REGULAR),
-    "impact_velocity:forms": Way(
-        "impulseDynamics of a Jacobian", f"{_JACOBIAN}value = pin.impulseDynamics(m, d, q, v2, J, 0.0, 1e-12)", _REGULAR
-    ),
-    "impulses": Way("impulseDynamics: impulse_c", f"{_IMPACT}0.0, ps)\nvalue = d.impulse_c", _REGULAR),
-    "impact_velocity_dq": Way(
-        "computeImpulseDynamicsDerivatives",
-        f"{_IMPACT}0.0, ps)\npin.computeImpulseDynamicsDerivatives(m, d, cm, cd, 0.0, ps)\nvalue = d.ddq_dq",
-        _REGULAR,
-    ),
-    "impulses_dq": Way(
-        "computeImpulseDynamicsDerivatives",
-        f"{_IMPACT}0.0, ps)\npin.computeImpulseDynamicsDerivatives(m, d, cm, cd, 0.0, ps)\nvalue = d.dlambda_dq",
-        _REGULAR,
-    ),
-}
+WAYS = ways_of(f"""
+== constraint_jacobian | getConstraintsJacobian | {_JACOBIAN}value = J
+== constraint_jacobian:anchors | getConstraintsJacobian of anchors
+ad = pin.StdVec_ConstraintData([one.createData() for one in am])
+pin.computeJointJacobians(m, d, q)
+for one, data in zip(am, ad): one.calc(m, d, data)
+value = -pin.getConstraintsJacobian(m, d, am, ad)
+== delassus | computeDelassusMatrix | {_DATA}value = pin.computeDelassusMatrix(m, d, q, cm, cd, 0.0)
+== delassus:ContactCholesky ~ {_REGULAR} | getInverseOperationalSpaceInertiaMatrix
+{_CHOLESKY}value = C.getInverseOperationalSpaceInertiaMatrix()
+== delassus_inverse_damped ~ {_DAMPED} | computeDampedDelassusMatrixInverse
+{_DATA}value = pin.computeDampedDelassusMatrixInverse(m, d, q, cm, cd, 1e-4, True) / 1e-4
+== delassus_inverse ~ {_REGULAR} | getOperationalSpaceInertiaMatrix
+{_CHOLESKY}value = C.getOperationalSpaceInertiaMatrix()
+== kkt_inverse | computeKKTContactDynamicMatrixInverse
+{_JACOBIAN}value = pin.computeKKTContactDynamicMatrixInverse(m, d, q, J, 0.0)
+== kkt_inverse:ContactCholesky ~ {_REGULAR} | ContactCholeskyDecomposition.inverse
+{_CHOLESKY}value = np.roll(C.inverse(), (m.nv, m.nv), (0, 1))
+== constrained_acceleration | constraintDynamics | {_DYNAMICS}
+== constrained_acceleration:proximal ~ {_PROXIMAL} | constraintDynamics, mu = 1e-6
+{_SOLVED}ps = pin.ProximalSettings(1e-13, 1e-6, 100)
+value = pin.constraintDynamics(m, d, q, v, tau, cm, cd, ps)
+== constrained_acceleration:lcaba ~ {_PROXIMAL} | lcaba, mu = 1e-6
+{_SOLVED}ps = pin.ProximalSettings(1e-13, 1e-6, 100)
+pin.computeJointMinimalOrdering(m, d, cm)
+value = pin.lcaba(m, d, q, v, tau, cm, cd, ps)
+== constraint_forces | constraintDynamics: lambda_c | {_DYNAMICS}value = d.lambda_c
+== impact_velocity ~ {_REGULAR} | impulseDynamics | {_IMPACT}0.0, ps)
+== impact_velocity_rebound ~ {_REGULAR} | impulseDynamics | {_IMPACT}0.5, ps)
+== impact_velocity:forms ~ {_REGULAR} | impulseDynamics of a Jacobian
+{_JACOBIAN}value = pin.impulseDynamics(m, d, q, v2, J, 0.0, 1e-12)
+== impulses ~ {_REGULAR} | impulseDynamics: impulse_c | {_IMPACT}0.0, ps)\nvalue = d.impulse_c
+== impact_velocity_dq ~ {_REGULAR} | computeImpulseDynamicsDerivatives
+{_IMPACT}0.0, ps)
+pin.computeImpulseDynamicsDerivatives(m, d, cm, cd, 0.0, ps)
+value = d.ddq_dq
+== impulses_dq ~ {_REGULAR} | computeImpulseDynamicsDerivatives
+{_IMPACT}0.0, ps)
+pin.computeImpulseDynamicsDerivatives(m, d, cm, cd, 0.0, ps)
+value = d.dlambda_dq
+""")
 for _number, _name in enumerate(("dq", "dv", "dtau")):
     _native = "computeConstraintDynamicsDerivatives"
     WAYS[f"constrained_acceleration_{_name}"] = Way(_native, f"{_DERIVATIVES}[{_number}]")
@@ -140,50 +119,32 @@ _APART = (
     f"{_DYNAMICS}bound = value.copy()\nfree = pin.aba(m, d, q, v, tau).copy()\n{_PLACED}"
     "J = pin.getConstraintsJacobian(m, d, cm, cd)\ng = J @ (free - bound)\n"
 )
-WAYS |= {
-    "constraint_jacobian:jacobianMatrixProduct": Way(
-        "jacobianMatrixProduct",
-        f"{_ANCHORED}value = -np.vstack([one.jacobianMatrixProduct(m, d, data, np.eye(m.nv))"
-        " for one, data in zip(am, ad)])",
-    ),
-    "constraint_jacobian:jacobianTransposeMatrixProduct": Way(
-        "jacobianTransposeMatrixProduct",
-        f"{_ANCHORED}value = -np.hstack([one.jacobianTransposeMatrixProduct(m, d, data, np.eye(one.residualSize()))"
-        " for one, data in zip(am, ad)]).T",
-    ),
-    "constraint_jacobian:jacobian": Way(
-        "jacobian", f"{_ANCHORED}value = -np.vstack([one.jacobian(m, d, data) for one, data in zip(am, ad)])"
-    ),
-    "constraint_jacobian:getConstraintJacobian": Way(
-        "getConstraintJacobian",
-        f"{_PLACED}value = np.vstack([pin.getConstraintJacobian(m, d, one, data) for one, data in zip(cm, cd)])",
-    ),
-    "delassus:anchors": Way(
-        "ConstraintCholeskyDecomposition",
-        f"{_DECOMPOSED}value = C.getInverseOperationalSpaceInertiaMatrix()",
-        _REGULAR,
-    ),
-    "delassus:operator": Way("DelassusOperatorCholeskyExpression.matrix", f"{_DECOMPOSED}value = G.matrix()", _REGULAR),
-    "delassus_inverse:anchors": Way(
-        "ConstraintCholeskyDecomposition", f"{_DECOMPOSED}value = C.getOperationalSpaceInertiaMatrix()", _REGULAR
-    ),
-    "delassus_inverse:operator": Way(
-        "DelassusOperatorCholeskyExpression.solve", f"{_DECOMPOSED}value = G.solve(np.eye(G.size()))", _REGULAR
-    ),
-    "constrained_acceleration:forwardDynamics": Way(
-        "forwardDynamics",
-        f"{_APART}value = pin.forwardDynamics(m, d, q, v, tau, J, -J @ bound, 0.0)",
-    ),
-    "constraint_forces:forwardDynamics": Way(
-        "forwardDynamics: lambda_c",
-        f"{_APART}pin.forwardDynamics(m, d, q, v, tau, J, -J @ bound, 0.0)\nvalue = d.lambda_c",
-    ),
-    "kkt_inverse:getKKTContactDynamicMatrixInverse": Way(
-        "forwardDynamics, getKKTContactDynamicMatrixInverse",
-        f"{_APART}pin.forwardDynamics(m, d, q, v, tau, J, -J @ bound, 0.0)\n"
-        "value = pin.getKKTContactDynamicMatrixInverse(m, d, J)",
-    ),
-}
+WAYS |= ways_of(f"""
+== constraint_jacobian:jacobianMatrixProduct | jacobianMatrixProduct
+{_ANCHORED}value = -np.vstack([one.jacobianMatrixProduct(m, d, data, np.eye(m.nv)) for one, data in zip(am, ad)])
+== constraint_jacobian:jacobianTransposeMatrixProduct | jacobianTransposeMatrixProduct
+{_ANCHORED}value = -np.hstack([one.jacobianTransposeMatrixProduct(m, d, data, np.eye(one.residualSize())) for one, \
+data in zip(am, ad)]).T
+== constraint_jacobian:jacobian | jacobian
+{_ANCHORED}value = -np.vstack([one.jacobian(m, d, data) for one, data in zip(am, ad)])
+== constraint_jacobian:getConstraintJacobian | getConstraintJacobian
+{_PLACED}value = np.vstack([pin.getConstraintJacobian(m, d, one, data) for one, data in zip(cm, cd)])
+== delassus:anchors ~ {_REGULAR} | ConstraintCholeskyDecomposition
+{_DECOMPOSED}value = C.getInverseOperationalSpaceInertiaMatrix()
+== delassus:operator ~ {_REGULAR} | DelassusOperatorCholeskyExpression.matrix | {_DECOMPOSED}value = G.matrix()
+== delassus_inverse:anchors ~ {_REGULAR} | ConstraintCholeskyDecomposition
+{_DECOMPOSED}value = C.getOperationalSpaceInertiaMatrix()
+== delassus_inverse:operator ~ {_REGULAR} | DelassusOperatorCholeskyExpression.solve
+{_DECOMPOSED}value = G.solve(np.eye(G.size()))
+== constrained_acceleration:forwardDynamics | forwardDynamics
+{_APART}value = pin.forwardDynamics(m, d, q, v, tau, J, -J @ bound, 0.0)
+== constraint_forces:forwardDynamics | forwardDynamics: lambda_c
+{_APART}pin.forwardDynamics(m, d, q, v, tau, J, -J @ bound, 0.0)
+value = d.lambda_c
+== kkt_inverse:getKKTContactDynamicMatrixInverse | forwardDynamics, getKKTContactDynamicMatrixInverse
+{_APART}pin.forwardDynamics(m, d, q, v, tau, J, -J @ bound, 0.0)
+value = pin.getKKTContactDynamicMatrixInverse(m, d, J)
+""")
 
 # Points and welds along the world's axes: where they hold, accelerations, speeds and their derivatives are the same.
 _ALIGNED = (("pin.LOCAL)", "pin.LOCAL_WORLD_ALIGNED)"),)

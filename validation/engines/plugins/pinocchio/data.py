@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...truth.carried import AFAR
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 from .functions import WAYS as FIRST
 
 _EACH = "value = [{of} for j in js]"
@@ -126,16 +126,14 @@ WAYS = (
         f"{name}:RobotWrapper, {native}": Way(f"RobotWrapper.{native}", f"{_ROBOT}js\nvalue = {of}")
         for name, (native, of) in _WRAPPED.items()
     }
-    | {
-        "link_poses:liMi": Way(
-            "data.liMi",
-            f"{_FK}js\nX = [pin.SE3.Identity()]\n"
-            "for j in range(1, m.njoints): X.append(X[m.parents[j]] * d.liMi[j])\n"
-            + _EACH.format(of=_FLAT.format("X[j]")),
-        ),
-        "relative_poses": Way(
-            "findCommonAncestor, data.liMi",
-            f"""{_FK}js
+    | ways_of(f"""
+== link_poses:liMi | data.liMi
+{_FK}js
+X = [pin.SE3.Identity()]
+for j in range(1, m.njoints): X.append(X[m.parents[j]] * d.liMi[j])
+{_EACH.format(of=_FLAT.format("X[j]"))}
+== relative_poses | findCommonAncestor, data.liMi
+{_FK}js
 def path(j, start):
     X = pin.SE3.Identity()
     for k in list(m.supports[j])[start + 1 :]: X = X * d.liMi[k]
@@ -144,60 +142,44 @@ value = []
 for j in js:
     _, first, second = pin.findCommonAncestor(m, js[0], j)
     X = path(js[0], first).actInv(path(j, second))
-    value.append({_FLAT.format("X")})""",
-        ),
-        "total_mass": Way("computeTotalMass", "value = [pin.computeTotalMass(m)]"),
-        "coordinates_normalized": Way("normalize", f"{_DOUBLED}value = pin.normalize(m, x)"),
-        "coordinate_rates:compactTangentMap": Way(
-            "compactTangentMap, getTangentToConfigurationSparsitySegment",  # Counts, then places.
-            """N, T = np.zeros((m.nq, m.nv)), pin.compactTangentMap(m, q)
+    value.append({_FLAT.format("X")})
+== total_mass | computeTotalMass | value = [pin.computeTotalMass(m)]
+== coordinates_normalized | normalize | {_DOUBLED}value = pin.normalize(m, x)
+== # Counts, then places.
+== coordinate_rates:compactTangentMap | compactTangentMap, getTangentToConfigurationSparsitySegment
+N, T = np.zeros((m.nq, m.nv)), pin.compactTangentMap(m, q)
 count, first = pin.getTangentToConfigurationSparsitySegment(m)
 for i in range(m.nq): N[i, first[i] : first[i] + count[i]] = T[i, : count[i]]
-value = N @ v""",
-        ),
-        "bias:addFrame": Way("addFrame with inertia", f"{_BY_FRAMES}value = pin.nonLinearEffects(n, e, q, v)"),
-        "mass_matrix:addFrame": Way("addFrame with inertia", f"{_BY_FRAMES}value = pin.crba(n, e, q)"),
-        "carried_inertias:computeSupportedInertiaByFrame": Way(
-            "computeSupportedInertiaByFrame",
-            f"{_SUPPORTED}value = [pin.computeSupportedInertiaByFrame(n, e, joints[j], True).matrix() for j in js]",
-        ),
-        "joint_wrenches:computeSupportedForceByFrame": Way(
-            "computeSupportedForceByFrame",
-            f"{_SUPPORTED}value = [pin.computeSupportedForceByFrame(n, e, joints[j]).vector for j in js]",
-        ),
-        "link_poses:updateGeometryPlacements": Way("updateGeometryPlacements", f"{_PLACED.format('')}{_BALL_POSES}"),
-        "link_poses:GeometryModel.clone": Way("GeometryModel.clone", f"{_PLACED.format(_CLONED)}{_BALL_POSES}"),
-        "link_poses:GeometryModel.saveToString": Way(
-            "GeometryModel.saveToString, loadFromString", f"{_PLACED.format(_READ_AGAIN)}{_BALL_POSES}"
-        ),
-        "shape_poses": Way(
-            "buildGeomFromUrdfString, updateGeometryPlacements",
-            "g = pin.buildGeomFromUrdfString(m, TEXT, pin.GeometryType.COLLISION)\ngd = g.createData()\n"
-            f"pin.updateGeometryPlacements(m, d, g, gd, q)\nvalue = [{_FLAT.format('X')} for X in gd.oMg]",
-        ),
-        "link_distances": Way(
-            "computeDistances",
-            f"{_PLACED.format('')}pin.computeDistances(m, d, g, gd, q)\n"
-            "value = [one.min_distance + 0.25 for one in gd.distanceResults]",
-        ),
-        "link_distances:computeDistance": Way(
-            "computeDistance",
-            f"{_PLACED.format('')}"
-            "value = [pin.computeDistance(g, gd, k).min_distance + 0.25 for k in range(len(g.collisionPairs))]",
-        ),
-        "link_distances:getNearestPoint": Way(
-            "computeDistances: getNearestPoint",
-            f"{_PLACED.format('')}pin.computeDistances(m, d, g, gd, q)\n"
-            "value = [np.linalg.norm(one.getNearestPoint1() - one.getNearestPoint2()) + 0.25\n"
-            "         for one in gd.distanceResults]",
-        ),
-        "pushed_forces": Way("rnea with external forces", f"{_PUSHED}value = pin.rnea(m, d, q, v, a, given)"),
-        "pushed_accelerations": Way("aba with external forces", f"{_PUSHED}value = pin.aba(m, d, q, v, tau, given)"),
-        "pushed_accelerations:LOCAL": Way(
-            "aba with external forces in LOCAL",
-            f"{_PUSHED}value = pin.aba(m, d, q, v, tau, given, pin.Convention.LOCAL)",
-        ),
-    }
+value = N @ v
+== bias:addFrame | addFrame with inertia | {_BY_FRAMES}value = pin.nonLinearEffects(n, e, q, v)
+== mass_matrix:addFrame | addFrame with inertia | {_BY_FRAMES}value = pin.crba(n, e, q)
+== carried_inertias:computeSupportedInertiaByFrame | computeSupportedInertiaByFrame
+{_SUPPORTED}value = [pin.computeSupportedInertiaByFrame(n, e, joints[j], True).matrix() for j in js]
+== joint_wrenches:computeSupportedForceByFrame | computeSupportedForceByFrame
+{_SUPPORTED}value = [pin.computeSupportedForceByFrame(n, e, joints[j]).vector for j in js]
+== link_poses:updateGeometryPlacements | updateGeometryPlacements | {_PLACED.format("")}{_BALL_POSES}
+== link_poses:GeometryModel.clone | GeometryModel.clone | {_PLACED.format(_CLONED)}{_BALL_POSES}
+== link_poses:GeometryModel.saveToString | GeometryModel.saveToString, loadFromString
+{_PLACED.format(_READ_AGAIN)}{_BALL_POSES}
+== shape_poses | buildGeomFromUrdfString, updateGeometryPlacements
+g = pin.buildGeomFromUrdfString(m, TEXT, pin.GeometryType.COLLISION)
+gd = g.createData()
+pin.updateGeometryPlacements(m, d, g, gd, q)
+value = [{_FLAT.format("X")} for X in gd.oMg]
+== link_distances | computeDistances
+{_PLACED.format("")}pin.computeDistances(m, d, g, gd, q)
+value = [one.min_distance + 0.25 for one in gd.distanceResults]
+== link_distances:computeDistance | computeDistance
+{_PLACED.format("")}value = [pin.computeDistance(g, gd, k).min_distance + 0.25 for k in range(len(g.collisionPairs))]
+== link_distances:getNearestPoint | computeDistances: getNearestPoint
+{_PLACED.format("")}pin.computeDistances(m, d, g, gd, q)
+value = [np.linalg.norm(one.getNearestPoint1() - one.getNearestPoint2()) + 0.25
+         for one in gd.distanceResults]
+== pushed_forces | rnea with external forces | {_PUSHED}value = pin.rnea(m, d, q, v, a, given)
+== pushed_accelerations | aba with external forces | {_PUSHED}value = pin.aba(m, d, q, v, tau, given)
+== pushed_accelerations:LOCAL | aba with external forces in LOCAL
+{_PUSHED}value = pin.aba(m, d, q, v, tau, given, pin.Convention.LOCAL)
+""")
     | {
         f"pushed_accelerations_{by}": Way(
             "computeABADerivatives with external forces",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...functions import ALIGNED
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 from .functions import FRAMES
 
 _FK = "pin.forwardKinematics(m, d, q, v, a)\n"
@@ -73,22 +73,20 @@ WAYS = (
         f"{name}:RobotWrapper": Way("RobotWrapper", f"{_ROBOT}{_EACH_FRAME.format(of=of)}")
         for name, of in _OF_FRAMES.items()
     }
-    | {
-        "link_poses:updateFramePlacement": Way(
-            "updateGlobalPlacements, updateFramePlacement",
-            f"{_FK}for X in d.oMi: X.setIdentity()\npin.updateGlobalPlacements(m, d)\n"
-            "at = [pin.updateFramePlacement(m, d, f) for f in fs]\n"
-            "value = [[*X.translation, *X.rotation.flat] for X in at]",
-        ),
-        "coriolis_symmetry:getCoriolisMatrix": Way(
-            "computeRNEADerivatives, getCoriolisMatrix",
-            "pin.computeRNEADerivatives(m, d, q, v, a)\nC = pin.getCoriolisMatrix(m, d)\nvalue = C + C.T",
-        ),
-        "coriolis_forces:getCoriolisMatrix": Way(
-            "computeRNEADerivatives, getCoriolisMatrix",
-            "pin.computeRNEADerivatives(m, d, q, v, a)\nvalue = pin.getCoriolisMatrix(m, d) @ v",
-        ),
-    }
+    | ways_of(f"""
+== link_poses:updateFramePlacement | updateGlobalPlacements, updateFramePlacement
+{_FK}for X in d.oMi: X.setIdentity()
+pin.updateGlobalPlacements(m, d)
+at = [pin.updateFramePlacement(m, d, f) for f in fs]
+value = [[*X.translation, *X.rotation.flat] for X in at]
+== coriolis_symmetry:getCoriolisMatrix | computeRNEADerivatives, getCoriolisMatrix
+pin.computeRNEADerivatives(m, d, q, v, a)
+C = pin.getCoriolisMatrix(m, d)
+value = C + C.T
+== coriolis_forces:getCoriolisMatrix | computeRNEADerivatives, getCoriolisMatrix
+pin.computeRNEADerivatives(m, d, q, v, a)
+value = pin.getCoriolisMatrix(m, d) @ v
+""")
     | {
         f"{name}:getCentroidalDynamicsDerivatives": Way(
             "computeRNEADerivatives, getCentroidalDynamicsDerivatives",

@@ -10,7 +10,7 @@ import numpy as np
 from ...interface import Array, Joint, Link, Slot, Tree, Unsupported
 from ...tree import BASE, GRIPPER, MODIFIED
 from ...truth.arms import AT, BURDEN
-from ..writing.source import Source, Way
+from ..writing.source import Source, Way, ways_of
 
 _POSES = (
     "every = [X.A for X in robot.fkine_all(q)][1 : len(links) + 1]\n"
@@ -19,28 +19,20 @@ _POSES = (
 # About the base's origin, along its axes.
 _FROM_BASE = "value = robot.base.inv().Ad().T @ own"
 # Ways that only robots by parameters have.
-DENAVIT_WAYS = {
-    "end_loads_local": Way(
-        "rne with a wrench", "value = robot.rne(q, 0 * v, 0 * v, fext=tau) - robot.rne(q, 0 * v, 0 * v)"
-    ),
-    "end_loads_local:rne_python": Way(
-        "rne_python with a wrench",
-        "value = robot.rne_python(q, 0 * v, 0 * v, fext=tau) - robot.rne_python(q, 0 * v, 0 * v)",
-    ),
-    "base_wrench": Way("rne, base_wrench", f"_, own = robot.rne(q, v, a, base_wrench=True)\n{_FROM_BASE}"),
-    "base_wrench:rne_python": Way(
-        "rne_python, base_wrench", f"_, own = robot.rne_python(q, v, a, base_wrench=True)\n{_FROM_BASE}"
-    ),
-    "gravity:argument": Way("rne with gravity", "value = robot.rne(q, 0 * v, 0 * v, gravity=robot.gravity)"),
-    "inverse_dynamics:rne_python": Way("rne_python", "value = robot.rne_python(q, v, a)"),
-    "bias:rne_python": Way("rne_python", "value = robot.rne_python(q, v, 0 * v)"),
-    "link_poses:fkine_all of parameters": Way("DHRobot.fkine_all", _POSES),
-    "link_poses:A": Way(
-        "DHRobot.A",
-        "every = [robot.base.A @ robot.A([0, k], q).A for k in range(len(links))]\n"
-        "value = [[*X[:3, 3], *X[:3, :3].flat] for X in every]",
-    ),
-}
+DENAVIT_WAYS = ways_of(f"""
+== end_loads_local | rne with a wrench | value = robot.rne(q, 0 * v, 0 * v, fext=tau) - robot.rne(q, 0 * v, 0 * v)
+== end_loads_local:rne_python | rne_python with a wrench
+value = robot.rne_python(q, 0 * v, 0 * v, fext=tau) - robot.rne_python(q, 0 * v, 0 * v)
+== base_wrench | rne, base_wrench | _, own = robot.rne(q, v, a, base_wrench=True)\n{_FROM_BASE}
+== base_wrench:rne_python | rne_python, base_wrench | _, own = robot.rne_python(q, v, a, base_wrench=True)\n{_FROM_BASE}
+== gravity:argument | rne with gravity | value = robot.rne(q, 0 * v, 0 * v, gravity=robot.gravity)
+== inverse_dynamics:rne_python | rne_python | value = robot.rne_python(q, v, a)
+== bias:rne_python | rne_python | value = robot.rne_python(q, v, 0 * v)
+== link_poses:fkine_all of parameters | DHRobot.fkine_all | {_POSES}
+== link_poses:A | DHRobot.A
+every = [robot.base.A @ robot.A([0, k], q).A for k in range(len(links))]
+value = [[*X[:3, 3], *X[:3, :3].flat] for X in every]
+""")
 _FLAT = "X = {of}.A\nvalue = [*X[:3, 3], *X[:3, :3].flat]"
 ARM_WAYS = {
     "end_pose": Way("fkine", _FLAT.format(of="robot.fkine(q)")),

@@ -9,7 +9,7 @@ import numpy as np
 from ...interface import Array, Convention, Slot, Tree, Unsupported, Vector
 from ...tree import BASE, DENAVIT, GRIPPER, MODIFIED
 from ..writing.numbering import numbered
-from ..writing.source import Source, SourcePlugin, Way
+from ..writing.source import Source, SourcePlugin, Way, ways_of
 from . import denavit
 from .denavit import lacking, pose, without_tool
 
@@ -28,45 +28,38 @@ _TURN = "turn = np.kron(np.eye(2), robot.base.R)\n"
 _HESSIANS = f"""{_TURN}value = np.zeros((len(links), 6, robot.n, robot.n))
 for H, (name, (_, path)) in zip(value, links.items()):
     H[np.ix_(range(6), path, path)] = np.tensordot(turn, robot."""
-WAYS = {
-    "mass_matrix": Way("inertia", "value = robot.inertia(q)"),
-    # The call takes the links from the robot: each call has a robot of its own.
-    "coriolis_forces": Way("coriolis", "value = robot.coriolis(q, v) @ v"),
-    "gravity": Way("gravload", "value = robot.gravload(q)"),
-    "inverse_dynamics": Way("rne", "value = robot.rne(q, v, a)"),
-    "bias": Way("rne", "value = robot.rne(q, v, np.zeros(len(v)))"),
-    "forward_dynamics": Way("accel", "value = robot.accel(q, v, tau)"),
-    "joint_limits": Way("qlim", "value = np.transpose(robot.qlim)"),
-    "link_poses": Way(
-        "fkine",
-        """T = [robot.fkine(q, end=name).A for name in links]
-value = [[*X[:3, 3], *(X[:3, :3] @ np.transpose(A)).flat] for X, (A, _) in zip(T, links.values())]""",
-    ),
-    "link_poses:fkine_all": Way(
-        "fkine_all",
-        """every = robot.fkine_all(q)
+WAYS = (
+    ways_of(f"""
+== mass_matrix | inertia | value = robot.inertia(q)
+== # The call takes the links from the robot: each call has a robot of its own.
+== coriolis_forces | coriolis | value = robot.coriolis(q, v) @ v
+== gravity | gravload | value = robot.gravload(q)
+== inverse_dynamics | rne | value = robot.rne(q, v, a)
+== bias | rne | value = robot.rne(q, v, np.zeros(len(v)))
+== forward_dynamics | accel | value = robot.accel(q, v, tau)
+== joint_limits | qlim | value = np.transpose(robot.qlim)
+== link_poses | fkine
+T = [robot.fkine(q, end=name).A for name in links]
+value = [[*X[:3, 3], *(X[:3, :3] @ np.transpose(A)).flat] for X, (A, _) in zip(T, links.values())]
+== link_poses:fkine_all | fkine_all
+every = robot.fkine_all(q)
 T = [every[robot.link_dict[name].number].A for name in links]
-value = [[*X[:3, 3], *(X[:3, :3] @ np.transpose(A)).flat] for X, (A, _) in zip(T, links.values())]""",
-    ),
-    "link_jacobians": Way(
-        "jacob0",
-        f"""{_TURN}value = np.zeros((len(links), 6, robot.n))
+value = [[*X[:3, 3], *(X[:3, :3] @ np.transpose(A)).flat] for X, (A, _) in zip(T, links.values())]
+== link_jacobians | jacob0
+{_TURN}value = np.zeros((len(links), 6, robot.n))
 for J, (name, (_, path)) in zip(value, links.items()):
-    J[:, path] = turn @ robot.jacob0(q, end=name)""",
-    ),
-    "link_jacobians:ETS": Way(
-        "ETS.jacob0",
-        f"""{_TURN}value = np.zeros((len(links), 6, robot.n))
+    J[:, path] = turn @ robot.jacob0(q, end=name)
+== link_jacobians:ETS | ETS.jacob0
+{_TURN}value = np.zeros((len(links), 6, robot.n))
 for J, (name, (_, path)) in zip(value, links.items()):
-    J[:, path] = turn @ robot.ets(end=name).jacob0(q[path])""",
-    ),
-    "jacobian_local": Way("jacobe", f"{_IN_LINKS}jacobe(q, end=name)"),
-    "jacobian_local:ETS": Way("ETS.jacobe", f"{_IN_LINKS}ets(end=name).jacobe(q[path])"),
-    "jacobian_dq_aligned": Way("hessian0", f"{_HESSIANS}hessian0(q, end=name), (1, 1)).transpose(0, 2, 1)"),
-    "jacobian_dq_aligned:ETS": Way(
-        "ETS.hessian0", f"{_HESSIANS}ets(end=name).hessian0(q[path]), (1, 1)).transpose(0, 2, 1)"
-    ),
-} | denavit.WAYS
+    J[:, path] = turn @ robot.ets(end=name).jacob0(q[path])
+== jacobian_local | jacobe | {_IN_LINKS}jacobe(q, end=name)
+== jacobian_local:ETS | ETS.jacobe | {_IN_LINKS}ets(end=name).jacobe(q[path])
+== jacobian_dq_aligned | hessian0 | {_HESSIANS}hessian0(q, end=name), (1, 1)).transpose(0, 2, 1)
+== jacobian_dq_aligned:ETS | ETS.hessian0 | {_HESSIANS}ets(end=name).hessian0(q[path]), (1, 1)).transpose(0, 2, 1)
+""")
+    | denavit.WAYS
+)
 # Rows of a trajectory, of which the second is what is asked.
 _MANY = "Q, V, A, F = (np.stack([x / 2, x, 2 * x]) for x in (q, v, a, tau))\n"
 # Of one joint rows are taken for joints.
@@ -83,13 +76,11 @@ WAYS |= {
         ("inertia_forces", "itorque", "Q, A"),
     )
 }
-WAYS |= {
-    "link_poses:trajectory": Way("fkine of a trajectory", _SECOND.format(n="robot.n", of="robot.fkine(Q, end=name)")),
-    "link_poses:ETS, trajectory": Way(
-        "ETS.fkine of a trajectory",
-        _SECOND.format(n="len(path)", of="robot.base * robot.ets(end=name).fkine(Q[:, path])"),
-    ),
-}
+WAYS |= ways_of(f"""
+== link_poses:trajectory | fkine of a trajectory | {_SECOND.format(n="robot.n", of="robot.fkine(Q, end=name)")}
+== link_poses:ETS, trajectory | ETS.fkine of a trajectory
+{_SECOND.format(n="len(path)", of="robot.base * robot.ets(end=name).fkine(Q[:, path])")}
+""")
 
 
 _AGAINST = {(-x, -y, -z): letter for (x, y, z), letter in _LETTERS.items()}

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...truth.geometry.poses import CENTRE, MASS, MOMENTS
-from ..writing.source import HALF_TURNS, ON_END, Way
+from ..writing.source import HALF_TURNS, ON_END, Way, ways_of
 from . import solids
 
 IMPORTS = ("import numpy as np", "import pydrake.all as drake")
@@ -41,25 +41,18 @@ def _by_vector(of: str) -> str:
 
 
 _AGAIN = "RotationMatrix_[AD](R.{}()).matrix()"
-_DERIVATIVES = {
-    "rotation_matrix_dq": Way("RotationMatrix, AutoDiffXd", _along("R.matrix()")),
-    "rotation_matrix_dq:ToQuaternion": Way("ToQuaternion, AutoDiffXd", _along(_AGAIN.format("ToQuaternion"))),
-    "rotation_matrix_dq:ToRollPitchYaw": Way("ToRollPitchYaw, AutoDiffXd", _along(_AGAIN.format("ToRollPitchYaw"))),
-    "rotation_to_rpy_dq": Way("RollPitchYaw, AutoDiffXd", _along("RollPitchYaw_[AD](R).vector()")),
-    "rotation_to_rpy_dq:Quaternion": Way(
-        "RollPitchYaw of a Quaternion, AutoDiffXd", _along("RollPitchYaw_[AD](Q).vector()")
-    ),
-    "rotation_of_rpy_du": Way(
-        "RollPitchYaw, AutoDiffXd", _by_vector("RollPitchYaw_[AD](u).ToRotationMatrix().matrix()")
-    ),
-    "rotation_of_rpy_du:ToQuaternion": Way(
-        "RollPitchYaw.ToQuaternion, AutoDiffXd",
-        _by_vector("RotationMatrix_[AD](RollPitchYaw_[AD](u).ToQuaternion()).matrix()"),
-    ),
-    "rotation_exponential_du": Way(
-        "RotationMatrix of an AngleAxis, AutoDiffXd",
-        _by_vector("RotationMatrix_[AD](AngleAxis_[AD](length, u / length)).matrix()"),
-    ),
+_DERIVATIVES = ways_of(f"""
+== rotation_matrix_dq | RotationMatrix, AutoDiffXd | {_along("R.matrix()")}
+== rotation_matrix_dq:ToQuaternion | ToQuaternion, AutoDiffXd | {_along(_AGAIN.format("ToQuaternion"))}
+== rotation_matrix_dq:ToRollPitchYaw | ToRollPitchYaw, AutoDiffXd | {_along(_AGAIN.format("ToRollPitchYaw"))}
+== rotation_to_rpy_dq | RollPitchYaw, AutoDiffXd | {_along("RollPitchYaw_[AD](R).vector()")}
+== rotation_to_rpy_dq:Quaternion | RollPitchYaw of a Quaternion, AutoDiffXd | {_along("RollPitchYaw_[AD](Q).vector()")}
+== rotation_of_rpy_du | RollPitchYaw, AutoDiffXd | {_by_vector("RollPitchYaw_[AD](u).ToRotationMatrix().matrix()")}
+== rotation_of_rpy_du:ToQuaternion | RollPitchYaw.ToQuaternion, AutoDiffXd
+{_by_vector("RotationMatrix_[AD](RollPitchYaw_[AD](u).ToQuaternion()).matrix()")}
+== rotation_exponential_du | RotationMatrix of an AngleAxis, AutoDiffXd
+{_by_vector("RotationMatrix_[AD](AngleAxis_[AD](length, u / length)).matrix()")}
+""") | {
     **{
         name: Way(
             "MakeFromOneVector, AutoDiffXd",
@@ -120,192 +113,143 @@ _PLACED = {
         ("WeldJoint", "WeldFrames", f"p.WeldFrames(p.world_frame(), b.body_frame(), X)\n{_DONE}"),
     )
 }
-_PLACED |= {
-    "pose_inverse:GetFreeBodyPose": Way(
-        "GetFreeBodyPose", f"{_FREE}{_DONE}p.SetFreeBodyPose(c, b, X)\n" + _flat("p.GetFreeBodyPose(c, b).inverse()")
-    ),
-    "pose_inverse:GetDefaultFreeBodyPose": Way(
-        "GetDefaultFreeBodyPose",
-        f"{_FREE}p.SetDefaultFreeBodyPose(b, X)\np.Finalize()\n{_flat('p.GetDefaultFreeBodyPose(b).inverse()')}",
-    ),
-    "pose_inverse:GetPose": Way(
-        "RpyFloatingJoint.GetPose",
-        f"{_FREE}{_JOINED.format('RpyFloating')}{_DONE}j.SetPose(c, X)\n{_flat('j.GetPose(c).inverse()')}",
-    ),
-    "pose_composed:FixedOffsetFrame": Way(
-        "FixedOffsetFrame of a FixedOffsetFrame",
-        f"{_FREE}{_FRAME}G = p.AddFrame(drake.FixedOffsetFrame('G', F, Y))\n{_DONE}{_flat('G.CalcPoseInWorld(c)')}",
-    ),
-    "pose_composed:GetFixedPoseInBodyFrame": Way(
-        "GetFixedPoseInBodyFrame of a FixedOffsetFrame of another",
-        f"{_FREE}F = p.AddFrame(drake.FixedOffsetFrame('F', b.body_frame(), X))\n"
-        f"G = p.AddFrame(drake.FixedOffsetFrame('G', F, Y))\n{_DONE}{_flat('G.GetFixedPoseInBodyFrame()')}",
-    ),
-    "pose_composed:WeldFrames": Way(
-        "WeldFrames on a FixedOffsetFrame",
-        f"{_FREE}{_FRAME}p.WeldFrames(F, b.body_frame(), Y)\n{_DONE}{_flat(_STANDS)}",
-    ),
-    "pose_composed:child frame": Way(
-        "WeldFrames of a FixedOffsetFrame of the child",
-        f"{_FREE}G = p.AddFrame(drake.FixedOffsetFrame('G', b.body_frame(), Y.inverse()))\n"
-        f"p.WeldFrames(p.world_frame(), G, X)\n{_DONE}{_flat(_STANDS)}",
-    ),
-    "pose_composed:AddJoint": Way(
-        "AddJoint with frames on parent and child",
-        f"{_FREE}j = p.AddJoint(drake.WeldJoint('j', p.AddFrame(drake.FixedOffsetFrame('F', p.world_frame(), X)),"
-        " p.AddFrame(drake.FixedOffsetFrame('G', b.body_frame(), Y.inverse())), drake.RigidTransform()))\n"
-        f"{_DONE}{_flat(_STANDS)}",
-    ),
-    "pose_composed:SetFreeBodyPoseInAnchoredFrame": Way(
-        "SetFloatingBaseBodyPoseInAnchoredFrame",
-        f"{_FREE}{_FRAME}{_DONE}p.SetFloatingBaseBodyPoseInAnchoredFrame(c, F, b, Y)\n{_flat(_STANDS)}",
-    ),
-    "pose_composed:SetPoseInParentFrame": Way(
-        "FixedOffsetFrame.SetPoseInParentFrame",
-        f"{_FREE}F = p.AddFrame(drake.FixedOffsetFrame('F', p.world_frame(), Y))\n"
-        f"G = p.AddFrame(drake.FixedOffsetFrame('G', F, Y))\n{_DONE}F.SetPoseInParentFrame(c, X)\n"
-        f"{_flat('G.CalcPoseInWorld(c)')}",
-    ),
-    "pose_composed:GetAsMatrix4": Way(
-        "RigidTransform.GetAsMatrix4",
-        f"{_X}A = X.GetAsMatrix4() @ Y.GetAsMatrix4()\nvalue = [*A[:3, 3], *A[:3, :3].flat]",
-    ),
-    "pose_composed:GetAsMatrix34": Way(
-        "RigidTransform of a matrix, GetAsMatrix34",
-        f"{_X}A = drake.RigidTransform((X @ Y).GetAsMatrix34()).GetAsMatrix4()\nvalue = [*A[:3, 3], *A[:3, :3].flat]",
-    ),
-}
+_PLACED |= ways_of(f"""
+== pose_inverse:GetFreeBodyPose | GetFreeBodyPose
+{_FREE}{_DONE}p.SetFreeBodyPose(c, b, X)
+{_flat("p.GetFreeBodyPose(c, b).inverse()")}
+== pose_inverse:GetDefaultFreeBodyPose | GetDefaultFreeBodyPose
+{_FREE}p.SetDefaultFreeBodyPose(b, X)
+p.Finalize()
+{_flat("p.GetDefaultFreeBodyPose(b).inverse()")}
+== pose_inverse:GetPose | RpyFloatingJoint.GetPose
+{_FREE}{_JOINED.format("RpyFloating")}{_DONE}j.SetPose(c, X)
+{_flat("j.GetPose(c).inverse()")}
+== pose_composed:FixedOffsetFrame | FixedOffsetFrame of a FixedOffsetFrame
+{_FREE}{_FRAME}G = p.AddFrame(drake.FixedOffsetFrame('G', F, Y))
+{_DONE}{_flat("G.CalcPoseInWorld(c)")}
+== pose_composed:GetFixedPoseInBodyFrame | GetFixedPoseInBodyFrame of a FixedOffsetFrame of another
+{_FREE}F = p.AddFrame(drake.FixedOffsetFrame('F', b.body_frame(), X))
+G = p.AddFrame(drake.FixedOffsetFrame('G', F, Y))
+{_DONE}{_flat("G.GetFixedPoseInBodyFrame()")}
+== pose_composed:WeldFrames | WeldFrames on a FixedOffsetFrame
+{_FREE}{_FRAME}p.WeldFrames(F, b.body_frame(), Y)
+{_DONE}{_flat(_STANDS)}
+== pose_composed:child frame | WeldFrames of a FixedOffsetFrame of the child
+{_FREE}G = p.AddFrame(drake.FixedOffsetFrame('G', b.body_frame(), Y.inverse()))
+p.WeldFrames(p.world_frame(), G, X)
+{_DONE}{_flat(_STANDS)}
+== pose_composed:AddJoint | AddJoint with frames on parent and child
+{_FREE}j = p.AddJoint(drake.WeldJoint('j', p.AddFrame(drake.FixedOffsetFrame('F', p.world_frame(), X)), \
+p.AddFrame(drake.FixedOffsetFrame('G', b.body_frame(), Y.inverse())), drake.RigidTransform()))
+{_DONE}{_flat(_STANDS)}
+== pose_composed:SetFreeBodyPoseInAnchoredFrame | SetFloatingBaseBodyPoseInAnchoredFrame
+{_FREE}{_FRAME}{_DONE}p.SetFloatingBaseBodyPoseInAnchoredFrame(c, F, b, Y)
+{_flat(_STANDS)}
+== pose_composed:SetPoseInParentFrame | FixedOffsetFrame.SetPoseInParentFrame
+{_FREE}F = p.AddFrame(drake.FixedOffsetFrame('F', p.world_frame(), Y))
+G = p.AddFrame(drake.FixedOffsetFrame('G', F, Y))
+{_DONE}F.SetPoseInParentFrame(c, X)
+{_flat("G.CalcPoseInWorld(c)")}
+== pose_composed:GetAsMatrix4 | RigidTransform.GetAsMatrix4
+{_X}A = X.GetAsMatrix4() @ Y.GetAsMatrix4()
+value = [*A[:3, 3], *A[:3, :3].flat]
+== pose_composed:GetAsMatrix34 | RigidTransform of a matrix, GetAsMatrix34
+{_X}A = drake.RigidTransform((X @ Y).GetAsMatrix34()).GetAsMatrix4()
+value = [*A[:3, 3], *A[:3, :3].flat]
+""")
 WAYS = (
-    {
-        "rotation_matrix": Way("RotationMatrix of a Quaternion", f"{_R}value = R.matrix().ravel()"),
-        "rotation_matrix:ToQuaternion": Way(
-            "RotationMatrix.ToQuaternion", f"{_R}value = drake.RotationMatrix(R.ToQuaternion()).matrix().ravel()"
-        ),
-        "rotation_matrix:ToAngleAxis": Way(
-            "RotationMatrix.ToAngleAxis", f"{_R}value = drake.RotationMatrix(R.ToAngleAxis()).matrix().ravel()"
-        ),
-        "rotation_matrix:ToRollPitchYaw": Way(
-            "RotationMatrix.ToRollPitchYaw", f"{_R}value = drake.RotationMatrix(R.ToRollPitchYaw()).matrix().ravel()"
-        ),
-        "rotation_matrix:Quaternion.ToRollPitchYaw": Way(
-            "RollPitchYaw of a Quaternion",
-            "value = drake.RollPitchYaw(drake.Quaternion(q)).ToRotationMatrix().matrix().ravel()",
-        ),
-        "rotation_composed": Way("RotationMatrix.multiply", f"{_R}value = (R @ Q).matrix().ravel()"),
-        "rotation_composed:Quaternion": Way(
-            "Quaternion.multiply", "value = drake.Quaternion(q).multiply(drake.Quaternion(q2)).rotation().ravel()"
-        ),
-        "rotation_angle": Way(
-            "RotationMatrix.InvertAndCompose", f"{_R}value = [R.InvertAndCompose(Q).ToAngleAxis().angle()]"
-        ),
-        "rotation_logarithm": Way("ToAngleAxis", f"{_R}x = R.ToAngleAxis()\nvalue = x.angle() * x.axis()"),
-        "rotation_exponential": Way(
-            "AngleAxis",
-            "n = np.linalg.norm(v)\nvalue = drake.AngleAxis(n, v / n if n else np.eye(3)[0]).rotation().ravel()",
-        ),
-        **_DERIVATIVES,
-        "rotation_half_turns": Way(
-            "ToQuaternion",
-            f"{HALF_TURNS}value = [drake.RotationMatrix(H).ToQuaternion().rotation().ravel() for H in half_turns]",
-        ),
-        "rotation_half_turns:ToAngleAxis": Way(
-            "ToAngleAxis",
-            f"{HALF_TURNS}value = [drake.RotationMatrix(H).ToAngleAxis().rotation().ravel() for H in half_turns]",
-        ),
-        "rotation_half_turns:ToRollPitchYaw": Way(
-            "ToRollPitchYaw",
-            f"{HALF_TURNS}value = [drake.RollPitchYaw(drake.RotationMatrix(H)).ToRotationMatrix().matrix().ravel()"
-            " for H in half_turns]",
-        ),
-        "rotation_halfway": Way(
-            "Quaternion.slerp", "value = drake.Quaternion(q).slerp(0.25, drake.Quaternion(q2)).rotation().ravel()"
-        ),
-        "rotation_of_rpy": Way("RollPitchYaw", "value = drake.RollPitchYaw(v).ToRotationMatrix().matrix().ravel()"),
-        "rotation_of_rpy:ToQuaternion": Way(
-            "RollPitchYaw.ToQuaternion", "value = drake.RollPitchYaw(v).ToQuaternion().rotation().ravel()"
-        ),
-        "rotations_on_end": Way(
-            "RollPitchYaw of a RotationMatrix",
-            f"{ON_END}value = [drake.RollPitchYaw(drake.RotationMatrix(H)).ToRotationMatrix().matrix().ravel()"
-            " for H in on_end]",
-        ),
-        "quaternion_rates": Way(
-            "CalculateQuaternionDtFromAngularVelocityExpressedInB",
-            "from pydrake.math import CalculateQuaternionDtFromAngularVelocityExpressedInB as rates\n"
-            "value = rates(drake.Quaternion(q), v)",
-        ),
-        "rpy_rates:CalcAngularVelocityInChildFromRpyDt": Way(
-            "CalcAngularVelocityInChildFromRpyDt",
-            "A = drake.RollPitchYaw(v)\nR = A.ToRotationMatrix().matrix()\n"
-            "value = np.linalg.inv(np.stack("
-            "[R @ A.CalcAngularVelocityInChildFromRpyDt(e) for e in np.eye(3)], axis=1))",
-        ),
-        "rotation_matrix:ProjectToRotationMatrix": Way(
-            "RotationMatrix.ProjectToRotationMatrix",
-            f"{_R}value = drake.RotationMatrix.ProjectToRotationMatrix(2 * R.matrix()).matrix().ravel()",
-        ),
-        "rotation_to_rpy": Way("RollPitchYaw", f"{_R}value = drake.RollPitchYaw(R).vector()"),
-        "rpy_rates": Way(
-            "CalcRpyDtFromAngularVelocityInParent",
-            "A = drake.RollPitchYaw(v)\n"
-            "value = np.stack([A.CalcRpyDtFromAngularVelocityInParent(e) for e in np.eye(3)], axis=1)",
-        ),
-        "rpy_rates:CalcAngularVelocityInParentFromRpyDt": Way(
-            "CalcAngularVelocityInParentFromRpyDt",
-            "A = drake.RollPitchYaw(v)\n"
-            "value = np.linalg.inv(np.stack([A.CalcAngularVelocityInParentFromRpyDt(e) for e in np.eye(3)], axis=1))",
-        ),
-        "rpy_second_rates": Way(
-            "CalcRpyDDtFromRpyDtAndAngularAccelInParent",
-            "value = drake.RollPitchYaw(v).CalcRpyDDtFromRpyDtAndAngularAccelInParent(a, tau)",
-        ),
-        "rpy_second_rates:CalcRpyDDtFromAngularAccelInChild": Way(
-            "CalcRpyDDtFromAngularAccelInChild",
-            "A = drake.RollPitchYaw(v)\nR = A.ToRotationMatrix().matrix()\n"
-            "value = A.CalcRpyDDtFromAngularAccelInChild(a, R.T @ tau)",
-        ),
-        "rotation_matrix_rate_of_rpy": Way(
-            "CalcRotationMatrixDt", "value = drake.RollPitchYaw(v).CalcRotationMatrixDt(a).ravel()"
-        ),
-        "rpy_rates:InChild": Way(
-            "CalcRpyDtFromAngularVelocityInChild",
-            "A = drake.RollPitchYaw(v)\nR = A.ToRotationMatrix().matrix()\n"
-            "value = np.stack([A.CalcRpyDtFromAngularVelocityInChild(R.T @ e) for e in np.eye(3)], axis=1)",
-        ),
-        "are_rotations": Way(
-            "RotationMatrix.IsValid",
-            f"{_R}R = R.matrix()\n"
-            "every = (drake.RotationMatrix.MakeUnchecked(A) for A in (R, R * [1, 1, -1], 1.25 * R))\n"
-            "value = [float(A.IsValid()) for A in every]",
-        ),
-        "pose_composed": Way("RigidTransform.multiply", f"{_X}{_flat('X @ Y')}"),
-        "pose_unset": Way("RigidTransform", _flat("drake.RigidTransform()")),
-        "pose_inverse": Way("RigidTransform.inverse", f"{_X}{_flat('X.inverse()')}"),
-        "pose_relative": Way("RigidTransform.InvertAndCompose", f"{_X}{_flat('X.InvertAndCompose(Y)')}"),
-        "pose_of_point": Way("RigidTransform.multiply", f"{_X}value = X.multiply(p_BoQ_B=v)"),
-        "wrench_transform": Way(
-            "SpatialForce.Shift, Rotate",
-            f"{_X}F = [drake.SpatialForce(tau=e[3:], f=e[:3]).Rotate(X.rotation()).Shift(-a) for e in np.eye(6)]\n"
-            "value = np.stack([[*f.translational(), *f.rotational()] for f in F], axis=1)",
-        ),
-        "twist_transform": Way(
-            "SpatialVelocity.Shift, Rotate",
-            f"{_X}F = [drake.SpatialVelocity(w=e[3:], v=e[:3]).Rotate(X.rotation()).Shift(-a) for e in np.eye(6)]\n"
-            "value = np.stack([[*f.translational(), *f.rotational()] for f in F], axis=1)",
-        ),
-        "spatial_inertia": Way("SpatialInertia", f"{_I}{_SWAPPED.format(of='I.CopyToFullMatrix6()')}"),
-        "spatial_inertia_placed": Way(
-            "SpatialInertia.ReExpress, Shift",
-            f"{_X}{_I}{_SWAPPED.format(of='I.ReExpress(X.rotation()).Shift(-a).CopyToFullMatrix6()')}",
-        ),
-        "spatial_inertia_sum": Way(
-            "SpatialInertia +=",
-            f"{_X}{_I}K = I.ReExpress(X.rotation()).Shift(-a)\nK += I\n{_SWAPPED.format(of='K.CopyToFullMatrix6()')}",
-        ),
-        "spatial_momentum": Way(
-            "SpatialInertia * SpatialVelocity", f"{_I}{_V}L = I * V\nvalue = [*L.translational(), *L.rotational()]"
-        ),
-    }
+    (
+        ways_of(f"""
+== rotation_matrix | RotationMatrix of a Quaternion | {_R}value = R.matrix().ravel()
+== rotation_matrix:ToQuaternion | RotationMatrix.ToQuaternion
+{_R}value = drake.RotationMatrix(R.ToQuaternion()).matrix().ravel()
+== rotation_matrix:ToAngleAxis | RotationMatrix.ToAngleAxis
+{_R}value = drake.RotationMatrix(R.ToAngleAxis()).matrix().ravel()
+== rotation_matrix:ToRollPitchYaw | RotationMatrix.ToRollPitchYaw
+{_R}value = drake.RotationMatrix(R.ToRollPitchYaw()).matrix().ravel()
+== rotation_matrix:Quaternion.ToRollPitchYaw | RollPitchYaw of a Quaternion
+value = drake.RollPitchYaw(drake.Quaternion(q)).ToRotationMatrix().matrix().ravel()
+== rotation_composed | RotationMatrix.multiply | {_R}value = (R @ Q).matrix().ravel()
+== rotation_composed:Quaternion | Quaternion.multiply
+value = drake.Quaternion(q).multiply(drake.Quaternion(q2)).rotation().ravel()
+== rotation_angle | RotationMatrix.InvertAndCompose | {_R}value = [R.InvertAndCompose(Q).ToAngleAxis().angle()]
+== rotation_logarithm | ToAngleAxis | {_R}x = R.ToAngleAxis()\nvalue = x.angle() * x.axis()
+== rotation_exponential | AngleAxis
+n = np.linalg.norm(v)
+value = drake.AngleAxis(n, v / n if n else np.eye(3)[0]).rotation().ravel()
+""")
+        | {
+            **_DERIVATIVES,
+        }
+        | ways_of(f"""
+== rotation_half_turns | ToQuaternion
+{HALF_TURNS}value = [drake.RotationMatrix(H).ToQuaternion().rotation().ravel() for H in half_turns]
+== rotation_half_turns:ToAngleAxis | ToAngleAxis
+{HALF_TURNS}value = [drake.RotationMatrix(H).ToAngleAxis().rotation().ravel() for H in half_turns]
+== rotation_half_turns:ToRollPitchYaw | ToRollPitchYaw
+{HALF_TURNS}value = [drake.RollPitchYaw(drake.RotationMatrix(H)).ToRotationMatrix().matrix().ravel() for H in \
+half_turns]
+== rotation_halfway | Quaternion.slerp
+value = drake.Quaternion(q).slerp(0.25, drake.Quaternion(q2)).rotation().ravel()
+== rotation_of_rpy | RollPitchYaw | value = drake.RollPitchYaw(v).ToRotationMatrix().matrix().ravel()
+== rotation_of_rpy:ToQuaternion | RollPitchYaw.ToQuaternion
+value = drake.RollPitchYaw(v).ToQuaternion().rotation().ravel()
+== rotations_on_end | RollPitchYaw of a RotationMatrix
+{ON_END}value = [drake.RollPitchYaw(drake.RotationMatrix(H)).ToRotationMatrix().matrix().ravel() for H in on_end]
+== quaternion_rates | CalculateQuaternionDtFromAngularVelocityExpressedInB
+from pydrake.math import CalculateQuaternionDtFromAngularVelocityExpressedInB as rates
+value = rates(drake.Quaternion(q), v)
+== rpy_rates:CalcAngularVelocityInChildFromRpyDt | CalcAngularVelocityInChildFromRpyDt
+A = drake.RollPitchYaw(v)
+R = A.ToRotationMatrix().matrix()
+value = np.linalg.inv(np.stack([R @ A.CalcAngularVelocityInChildFromRpyDt(e) for e in np.eye(3)], axis=1))
+== rotation_matrix:ProjectToRotationMatrix | RotationMatrix.ProjectToRotationMatrix
+{_R}value = drake.RotationMatrix.ProjectToRotationMatrix(2 * R.matrix()).matrix().ravel()
+== rotation_to_rpy | RollPitchYaw | {_R}value = drake.RollPitchYaw(R).vector()
+== rpy_rates | CalcRpyDtFromAngularVelocityInParent
+A = drake.RollPitchYaw(v)
+value = np.stack([A.CalcRpyDtFromAngularVelocityInParent(e) for e in np.eye(3)], axis=1)
+== rpy_rates:CalcAngularVelocityInParentFromRpyDt | CalcAngularVelocityInParentFromRpyDt
+A = drake.RollPitchYaw(v)
+value = np.linalg.inv(np.stack([A.CalcAngularVelocityInParentFromRpyDt(e) for e in np.eye(3)], axis=1))
+== rpy_second_rates | CalcRpyDDtFromRpyDtAndAngularAccelInParent
+value = drake.RollPitchYaw(v).CalcRpyDDtFromRpyDtAndAngularAccelInParent(a, tau)
+== rpy_second_rates:CalcRpyDDtFromAngularAccelInChild | CalcRpyDDtFromAngularAccelInChild
+A = drake.RollPitchYaw(v)
+R = A.ToRotationMatrix().matrix()
+value = A.CalcRpyDDtFromAngularAccelInChild(a, R.T @ tau)
+== rotation_matrix_rate_of_rpy | CalcRotationMatrixDt | value = drake.RollPitchYaw(v).CalcRotationMatrixDt(a).ravel()
+== rpy_rates:InChild | CalcRpyDtFromAngularVelocityInChild
+A = drake.RollPitchYaw(v)
+R = A.ToRotationMatrix().matrix()
+value = np.stack([A.CalcRpyDtFromAngularVelocityInChild(R.T @ e) for e in np.eye(3)], axis=1)
+== are_rotations | RotationMatrix.IsValid
+{_R}R = R.matrix()
+every = (drake.RotationMatrix.MakeUnchecked(A) for A in (R, R * [1, 1, -1], 1.25 * R))
+value = [float(A.IsValid()) for A in every]
+== pose_composed | RigidTransform.multiply | {_X}{_flat("X @ Y")}
+== pose_unset | RigidTransform | {_flat("drake.RigidTransform()")}
+== pose_inverse | RigidTransform.inverse | {_X}{_flat("X.inverse()")}
+== pose_relative | RigidTransform.InvertAndCompose | {_X}{_flat("X.InvertAndCompose(Y)")}
+== pose_of_point | RigidTransform.multiply | {_X}value = X.multiply(p_BoQ_B=v)
+== wrench_transform | SpatialForce.Shift, Rotate
+{_X}F = [drake.SpatialForce(tau=e[3:], f=e[:3]).Rotate(X.rotation()).Shift(-a) for e in np.eye(6)]
+value = np.stack([[*f.translational(), *f.rotational()] for f in F], axis=1)
+== twist_transform | SpatialVelocity.Shift, Rotate
+{_X}F = [drake.SpatialVelocity(w=e[3:], v=e[:3]).Rotate(X.rotation()).Shift(-a) for e in np.eye(6)]
+value = np.stack([[*f.translational(), *f.rotational()] for f in F], axis=1)
+== spatial_inertia | SpatialInertia | {_I}{_SWAPPED.format(of="I.CopyToFullMatrix6()")}
+== spatial_inertia_placed | SpatialInertia.ReExpress, Shift
+{_X}{_I}{_SWAPPED.format(of="I.ReExpress(X.rotation()).Shift(-a).CopyToFullMatrix6()")}
+== spatial_inertia_sum | SpatialInertia +=
+{_X}{_I}K = I.ReExpress(X.rotation()).Shift(-a)
+K += I
+{_SWAPPED.format(of="K.CopyToFullMatrix6()")}
+== spatial_momentum | SpatialInertia * SpatialVelocity
+{_I}{_V}L = I * V
+value = [*L.translational(), *L.rotational()]
+""")
+    )
     | _PLACED
     | solids.DRAKE
 )

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...truth.geometry.poses import CENTRE, MASS, MOMENTS
-from ..writing.source import HALF_TURNS, ON_END, Way
+from ..writing.source import HALF_TURNS, ON_END, Way, ways_of
 from . import exudyn_items, solids
 
 IMPORTS = ("from exudyn import lieGroupBasics as lie", "from exudyn import rigidBodyUtilities as rbu")
@@ -29,130 +29,111 @@ def _half_turns(of: str) -> str:
 
 
 _BACK = "rbu.EulerParameters2RotationMatrix(rbu.{}(R))"
-_ROTATIONS = {
-    "rotation_matrix": Way("EulerParameters2RotationMatrix", _matrix("R", _R)),
-    "rotation_matrix:RotationMatrix2EulerParameters": Way(
-        "RotationMatrix2EulerParameters", _matrix(_BACK.format("RotationMatrix2EulerParameters"), _R)
-    ),
-    "rotation_matrix:RotationMatrix2RotXYZ": Way(
-        "RotationMatrix2RotXYZ", _matrix("rbu.RotXYZ2RotationMatrix(rbu.RotationMatrix2RotXYZ(R))", _R)
-    ),
-    "rotation_matrix:RotXYZ2EulerParameters": Way(
-        "RotXYZ2EulerParameters",
-        _matrix("rbu.EulerParameters2RotationMatrix(rbu.RotXYZ2EulerParameters(rbu.RotationMatrix2RotXYZ(R)))", _R),
-    ),
-    **{
-        f"rotation_matrix:RotationMatrix2RotZYZ{number}": Way(
-            "RotationMatrix2RotZYZ",
-            f"{_R}x, y, z = rbu.RotationMatrix2RotZYZ(R, {flip})\n"
-            "value = np.ravel(rbu.RotationMatrixZ(x) @ rbu.RotationMatrixY(y) @ rbu.RotationMatrixZ(z))",
-        )
-        for number, flip in (("", False), (" flipped", True))
-    },
-    "rotation_composed:CompositionRuleForEulerParameters": Way(
-        "CompositionRuleForEulerParameters",
-        _matrix("rbu.EulerParameters2RotationMatrix(lie.CompositionRuleForEulerParameters(q, q2))"),
-    ),
-    "rotation_composed:CompositionRuleForRotationVectors": Way(
-        "CompositionRuleForRotationVectors",
-        f"{_R}r, s = rbu.RotationMatrix2RotationVector(R), rbu.RotationMatrix2RotationVector(Q)\n"
-        "value = np.ravel(lie.ExpSO3(lie.CompositionRuleForRotationVectors(r, s)))",
-    ),
-    "rotation_composed:CompositionRuleRotXYZAnglesRotationVector": Way(
-        "CompositionRuleRotXYZAnglesRotationVector",
-        f"{_R}r, s = rbu.RotationMatrix2RotXYZ(R), rbu.RotationMatrix2RotationVector(Q)\n"
-        "value = np.ravel(rbu.RotXYZ2RotationMatrix(lie.CompositionRuleRotXYZAnglesRotationVector(r, s)))",
-    ),
-    "rotation_logarithm": Way("RotationMatrix2RotationVector", f"{_R}value = rbu.RotationMatrix2RotationVector(R)"),
-    "rotation_logarithm:LogSO3": Way("LogSO3", f"{_R}value = rbu.Skew2Vec(lie.LogSO3(R))"),
-    "rotation_half_turns": Way(
-        "RotationMatrix2EulerParameters",
-        _half_turns(_BACK.format("RotationMatrix2EulerParameters").replace("R)", "H)")),
-    ),
-    "rotation_half_turns:RotationMatrix2RotXYZ": Way(
-        "RotationMatrix2RotXYZ", _half_turns("rbu.RotXYZ2RotationMatrix(rbu.RotationMatrix2RotXYZ(H))")
-    ),
-    "rotation_half_turns:RotationMatrix2RotationVector": Way(
-        "RotationMatrix2RotationVector",
-        _half_turns("rbu.RotationVector2RotationMatrix(rbu.RotationMatrix2RotationVector(H))"),
-    ),
-    **{
-        name: Way(native, code.format(vector))
-        for function, vector in (("rotation_exponential", "v"), ("rotation_exponential_of_turns", "16 * v"))
-        for name, native, code in (
-            (function, "RotationVector2RotationMatrix", "value = rbu.RotationVector2RotationMatrix({}).ravel()"),
-            (f"{function}:ExpSO3", "ExpSO3", "value = lie.ExpSO3({}).ravel()"),
-            (f"{function}:ExpS3", "ExpS3", "value = rbu.EulerParameters2RotationMatrix(lie.ExpS3({})).ravel()"),
-        )
-    },
-    "rotation_vector_speeds": Way("TExpSO3", "value = lie.TExpSO3(tau)"),
-    "rotation_vector_rates": Way("TExpSO3Inv", "value = lie.TExpSO3Inv(tau)"),
-    "quaternion_rates": Way("EulerParameters2GLocal", "value = rbu.EulerParameters2GLocal(q).T @ v / 4"),
-    "quaternion_rates_fixed": Way(
-        "AngularVelocity2EulerParameters_t", "value = rbu.AngularVelocity2EulerParameters_t(v, q)"
-    ),
-}
+_ROTATIONS = (
+    ways_of(f"""
+== rotation_matrix | EulerParameters2RotationMatrix | {_matrix("R", _R)}
+== rotation_matrix:RotationMatrix2EulerParameters | RotationMatrix2EulerParameters
+{_matrix(_BACK.format("RotationMatrix2EulerParameters"), _R)}
+== rotation_matrix:RotationMatrix2RotXYZ | RotationMatrix2RotXYZ
+{_matrix("rbu.RotXYZ2RotationMatrix(rbu.RotationMatrix2RotXYZ(R))", _R)}
+== rotation_matrix:RotXYZ2EulerParameters | RotXYZ2EulerParameters
+{_matrix("rbu.EulerParameters2RotationMatrix(rbu.RotXYZ2EulerParameters(rbu.RotationMatrix2RotXYZ(R)))", _R)}
+""")
+    | {
+        **{
+            f"rotation_matrix:RotationMatrix2RotZYZ{number}": Way(
+                "RotationMatrix2RotZYZ",
+                f"{_R}x, y, z = rbu.RotationMatrix2RotZYZ(R, {flip})\n"
+                "value = np.ravel(rbu.RotationMatrixZ(x) @ rbu.RotationMatrixY(y) @ rbu.RotationMatrixZ(z))",
+            )
+            for number, flip in (("", False), (" flipped", True))
+        },
+    }
+    | ways_of(f"""
+== rotation_composed:CompositionRuleForEulerParameters | CompositionRuleForEulerParameters
+{_matrix("rbu.EulerParameters2RotationMatrix(lie.CompositionRuleForEulerParameters(q, q2))")}
+== rotation_composed:CompositionRuleForRotationVectors | CompositionRuleForRotationVectors
+{_R}r, s = rbu.RotationMatrix2RotationVector(R), rbu.RotationMatrix2RotationVector(Q)
+value = np.ravel(lie.ExpSO3(lie.CompositionRuleForRotationVectors(r, s)))
+== rotation_composed:CompositionRuleRotXYZAnglesRotationVector | CompositionRuleRotXYZAnglesRotationVector
+{_R}r, s = rbu.RotationMatrix2RotXYZ(R), rbu.RotationMatrix2RotationVector(Q)
+value = np.ravel(rbu.RotXYZ2RotationMatrix(lie.CompositionRuleRotXYZAnglesRotationVector(r, s)))
+== rotation_logarithm | RotationMatrix2RotationVector | {_R}value = rbu.RotationMatrix2RotationVector(R)
+== rotation_logarithm:LogSO3 | LogSO3 | {_R}value = rbu.Skew2Vec(lie.LogSO3(R))
+== rotation_half_turns | RotationMatrix2EulerParameters
+{_half_turns(_BACK.format("RotationMatrix2EulerParameters").replace("R)", "H)"))}
+== rotation_half_turns:RotationMatrix2RotXYZ | RotationMatrix2RotXYZ
+{_half_turns("rbu.RotXYZ2RotationMatrix(rbu.RotationMatrix2RotXYZ(H))")}
+== rotation_half_turns:RotationMatrix2RotationVector | RotationMatrix2RotationVector
+{_half_turns("rbu.RotationVector2RotationMatrix(rbu.RotationMatrix2RotationVector(H))")}
+""")
+    | {
+        **{
+            name: Way(native, code.format(vector))
+            for function, vector in (("rotation_exponential", "v"), ("rotation_exponential_of_turns", "16 * v"))
+            for name, native, code in (
+                (function, "RotationVector2RotationMatrix", "value = rbu.RotationVector2RotationMatrix({}).ravel()"),
+                (f"{function}:ExpSO3", "ExpSO3", "value = lie.ExpSO3({}).ravel()"),
+                (f"{function}:ExpS3", "ExpS3", "value = rbu.EulerParameters2RotationMatrix(lie.ExpS3({})).ravel()"),
+            )
+        },
+        "rotation_vector_speeds": Way("TExpSO3", "value = lie.TExpSO3(tau)"),
+        "rotation_vector_rates": Way("TExpSO3Inv", "value = lie.TExpSO3Inv(tau)"),
+        "quaternion_rates": Way("EulerParameters2GLocal", "value = rbu.EulerParameters2GLocal(q).T @ v / 4"),
+        "quaternion_rates_fixed": Way(
+            "AngularVelocity2EulerParameters_t", "value = rbu.AngularVelocity2EulerParameters_t(v, q)"
+        ),
+    }
+)
 # Its angles are about x, y, z in turn: roll, pitch, yaw of R are their negatives for R^T, which turns as R does, the
 # other way round and about the axes of its own.
-_ROLLED = {
-    "rotation_of_rpy": Way("RotXYZ2RotationMatrix", "value = rbu.RotXYZ2RotationMatrix(-v).T.ravel()"),
-    "rotations_on_end": Way(
-        "RotationMatrix2RotXYZ",
-        f"{ON_END}value = [rbu.RotXYZ2RotationMatrix(rbu.RotationMatrix2RotXYZ(H.T)).T.ravel() for H in on_end]",
-    ),
-    "rotation_to_rpy": Way("RotationMatrix2RotXYZ", f"{_R}value = -rbu.RotationMatrix2RotXYZ(R.T)"),
-    "rpy_rates": Way("RotXYZ2GLocal", "value = np.linalg.inv(rbu.RotXYZ2GLocal(-v))"),
-    "rpy_rates:RotXYZ2G": Way("RotXYZ2G", "value = np.linalg.inv(rbu.RotXYZ2RotationMatrix(-v).T @ rbu.RotXYZ2G(-v))"),
-    "rpy_rates:AngularVelocity2RotXYZ_t": Way(
-        "AngularVelocity2RotXYZ_t",
-        "R = rbu.RotXYZ2RotationMatrix(-v)\n"
-        "value = np.stack([rbu.AngularVelocity2RotXYZ_t(R @ e, -v) for e in np.eye(3)], axis=1)",
-    ),
-    "rpy_rates_rate": Way(
-        "RotXYZ2GLocal_t",
-        "B = np.linalg.inv(rbu.RotXYZ2GLocal(-v))\nvalue = -B @ rbu.RotXYZ2GLocal_t(-v, -a) @ B",
-    ),
-    "rpy_rates_rate:RotXYZ2G_t": Way(
-        "RotXYZ2G_t",
-        "R, G = rbu.RotXYZ2RotationMatrix(-v), rbu.RotXYZ2G(-v)\nB = np.linalg.inv(R.T @ G)\n"
-        "turning = R.T @ rbu.RotXYZ2G_t(-v, -a) - rbu.Skew(R.T @ G @ -a) @ R.T @ G\nvalue = -B @ turning @ B",
-    ),
-    "rotation_of_zyz": Way(
-        "RotationMatrixZ, RotationMatrixY",
-        "value = (rbu.RotationMatrixZ(v[0]) @ rbu.RotationMatrixY(v[1]) @ rbu.RotationMatrixZ(v[2])).ravel()",
-    ),
-}
-_PLACEMENTS = {
-    "pose_composed": Way("HomogeneousTransformation", _flat("X @ Y")),
-    "pose_composed:T66": Way(
-        "RotationTranslation2T66, T66toHT",
-        _flat("rbu.T66toHT(rbu.RotationTranslation2T66(R, a) @ rbu.RotationTranslation2T66(Q, tau))"),
-    ),
-    "pose_composed:InverseT66toRotationTranslation": Way(
-        "InverseT66toRotationTranslation",
-        f"{_X}T, r = rbu.InverseT66toRotationTranslation(rbu.HT2T66Inverse(X @ Y))\nvalue = [*r, *T.flat]",
-    ),
-    "pose_inverse": Way("InverseHT", _flat("rbu.InverseHT(X)")),
-    "pose_relative": Way("InverseHT", _flat("rbu.InverseHT(X) @ Y")),
-    "pose_logarithm": Way("LogSE3", f"{_X}T = lie.LogSE3(X)\nvalue = [*T[:3, 3], *rbu.Skew2Vec(T[:3, :3])]"),
-    "pose_exponential": Way("ExpSE3", "T = lie.ExpSE3(np.r_[v, v2])\nvalue = [*T[:3, 3], *T[:3, :3].flat]"),
-    "pose_exponential_speeds": Way("TExpSE3", "value = lie.TExpSE3(np.r_[v, v2])"),
-    "pose_logarithm_rates": Way(
-        "TExpSE3Inv", f"{_X}T = lie.LogSE3(X)\nvalue = lie.TExpSE3Inv(np.r_[T[:3, 3], rbu.Skew2Vec(T[:3, :3])])"
-    ),
-    "twist_transform": Way("RotationTranslation2T66", _R + _SWAPPED.format(of="rbu.RotationTranslation2T66(R, a)")),
-    "twist_transform_back": Way(
-        "RotationTranslation2T66Inverse", _R + _SWAPPED.format(of="rbu.RotationTranslation2T66Inverse(R, a)")
-    ),
-    "twist_transform_back:T66Inverse": Way(
-        "T66Inverse", _R + _SWAPPED.format(of="rbu.T66Inverse(rbu.RotationTranslation2T66(R, a))")
-    ),
-    "twist_transform_back:HT2T66Inverse": Way("HT2T66Inverse", _X + _SWAPPED.format(of="rbu.HT2T66Inverse(X)")),
-    "spatial_inertia": Way("RigidBodyInertia", _INERTIA + _MOMENTUM),
-    "spatial_inertia_placed": Way("RigidBodyInertia.Transformed", f"{_X}{_INERTIA}I = I.Transformed(X)\n{_MOMENTUM}"),
-    "spatial_inertia_sum": Way("RigidBodyInertia +", f"{_X}{_INERTIA}I = I.Transformed(X) + I\n{_MOMENTUM}"),
-    "spatial_inertia_sum:+=": Way("RigidBodyInertia +=", f"{_X}{_INERTIA}K = I.Transformed(X)\nI += K\n{_MOMENTUM}"),
-}
+_ROLLED = ways_of(f"""
+== rotation_of_rpy | RotXYZ2RotationMatrix | value = rbu.RotXYZ2RotationMatrix(-v).T.ravel()
+== rotations_on_end | RotationMatrix2RotXYZ
+{ON_END}value = [rbu.RotXYZ2RotationMatrix(rbu.RotationMatrix2RotXYZ(H.T)).T.ravel() for H in on_end]
+== rotation_to_rpy | RotationMatrix2RotXYZ | {_R}value = -rbu.RotationMatrix2RotXYZ(R.T)
+== rpy_rates | RotXYZ2GLocal | value = np.linalg.inv(rbu.RotXYZ2GLocal(-v))
+== rpy_rates:RotXYZ2G | RotXYZ2G | value = np.linalg.inv(rbu.RotXYZ2RotationMatrix(-v).T @ rbu.RotXYZ2G(-v))
+== rpy_rates:AngularVelocity2RotXYZ_t | AngularVelocity2RotXYZ_t
+R = rbu.RotXYZ2RotationMatrix(-v)
+value = np.stack([rbu.AngularVelocity2RotXYZ_t(R @ e, -v) for e in np.eye(3)], axis=1)
+== rpy_rates_rate | RotXYZ2GLocal_t
+B = np.linalg.inv(rbu.RotXYZ2GLocal(-v))
+value = -B @ rbu.RotXYZ2GLocal_t(-v, -a) @ B
+== rpy_rates_rate:RotXYZ2G_t | RotXYZ2G_t
+R, G = rbu.RotXYZ2RotationMatrix(-v), rbu.RotXYZ2G(-v)
+B = np.linalg.inv(R.T @ G)
+turning = R.T @ rbu.RotXYZ2G_t(-v, -a) - rbu.Skew(R.T @ G @ -a) @ R.T @ G
+value = -B @ turning @ B
+== rotation_of_zyz | RotationMatrixZ, RotationMatrixY
+value = (rbu.RotationMatrixZ(v[0]) @ rbu.RotationMatrixY(v[1]) @ rbu.RotationMatrixZ(v[2])).ravel()
+""")
+_PLACEMENTS = ways_of(f"""
+== pose_composed | HomogeneousTransformation | {_flat("X @ Y")}
+== pose_composed:T66 | RotationTranslation2T66, T66toHT
+{_flat("rbu.T66toHT(rbu.RotationTranslation2T66(R, a) @ rbu.RotationTranslation2T66(Q, tau))")}
+== pose_composed:InverseT66toRotationTranslation | InverseT66toRotationTranslation
+{_X}T, r = rbu.InverseT66toRotationTranslation(rbu.HT2T66Inverse(X @ Y))
+value = [*r, *T.flat]
+== pose_inverse | InverseHT | {_flat("rbu.InverseHT(X)")}
+== pose_relative | InverseHT | {_flat("rbu.InverseHT(X) @ Y")}
+== pose_logarithm | LogSE3 | {_X}T = lie.LogSE3(X)\nvalue = [*T[:3, 3], *rbu.Skew2Vec(T[:3, :3])]
+== pose_exponential | ExpSE3 | T = lie.ExpSE3(np.r_[v, v2])\nvalue = [*T[:3, 3], *T[:3, :3].flat]
+== pose_exponential_speeds | TExpSE3 | value = lie.TExpSE3(np.r_[v, v2])
+== pose_logarithm_rates | TExpSE3Inv
+{_X}T = lie.LogSE3(X)
+value = lie.TExpSE3Inv(np.r_[T[:3, 3], rbu.Skew2Vec(T[:3, :3])])
+== twist_transform | RotationTranslation2T66 | {_R}{_SWAPPED.format(of="rbu.RotationTranslation2T66(R, a)")}
+== twist_transform_back | RotationTranslation2T66Inverse
+{_R}{_SWAPPED.format(of="rbu.RotationTranslation2T66Inverse(R, a)")}
+== twist_transform_back:T66Inverse | T66Inverse
+{_R}{_SWAPPED.format(of="rbu.T66Inverse(rbu.RotationTranslation2T66(R, a))")}
+== twist_transform_back:HT2T66Inverse | HT2T66Inverse | {_X}{_SWAPPED.format(of="rbu.HT2T66Inverse(X)")}
+== spatial_inertia | RigidBodyInertia | {_INERTIA}{_MOMENTUM}
+== spatial_inertia_placed | RigidBodyInertia.Transformed | {_X}{_INERTIA}I = I.Transformed(X)\n{_MOMENTUM}
+== spatial_inertia_sum | RigidBodyInertia + | {_X}{_INERTIA}I = I.Transformed(X) + I\n{_MOMENTUM}
+== spatial_inertia_sum:+= | RigidBodyInertia += | {_X}{_INERTIA}K = I.Transformed(X)\nI += K\n{_MOMENTUM}
+""")
 _TREES = "from exudyn import kinematicTree as kt\n"
 _BODY66 = f"{_TREES}A = kt.MassCOMinertia2T66({MASS}, {list(CENTRE)}, np.array({[list(row) for row in MOMENTS]}))\n"
 _TURNED = "value = [np.ravel({of}(x){part}) for {of}, x in zip(({names}), v)]"

@@ -19,7 +19,7 @@ from ...truth.features.connectors import (
     TWISTED,
 )
 from ...truth.geometry.shapes import BEYOND
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 
 # No files are written; older releases have another name for that.
 QUIET = """if hasattr(settings, 'solution'): settings.solution.file.write, settings.solution.file.name = False, ''
@@ -137,42 +137,30 @@ WAYS = {
         "ObjectConnectorCartesianSpringDamper",
         _acting(f"mbs.AddObject(items.ObjectConnectorCartesianSpringDamper({_CARTESIAN}))"),
     ),
-    "connector_gravity": Way("ObjectConnectorGravity", _acting(_GRAVITY)),
-    "connector_of_coordinates": Way(
-        "ObjectConnectorCoordinateSpringDamper",
-        f"{_MASSES}mbs.AddObject(items.ObjectConnectorCoordinateSpringDamper({_OF_COORDINATES})){_FORCES}",
-    ),
-    "connector_of_coordinates:Ext": Way(
-        "ObjectConnectorCoordinateSpringDamperExt",
-        f"{_MASSES}mbs.AddObject(items.ObjectConnectorCoordinateSpringDamperExt({_OF_COORDINATES})){_FORCES}",
-    ),
-    "connector_of_coordinates:user function": Way(
-        "ObjectConnectorCoordinateSpringDamper, springForceUserFunction", f"{_MASSES}{_COORDINATE_USER}{_FORCES}"
-    ),
-    "load_before": Way("LoadForceVector, LoadTorqueVector", _loads(False)),
-    "load_before:user function": Way("loadVectorUserFunction", _USER_LOADS),
-    "load_following": Way("LoadForceVector, LoadTorqueVector, bodyFixed", _loads(True)),
-    "body_sensed": Way("SensorBody", _sensing(_OF_BODY, _OUTPUTS)),
-    "point_sensed": Way("SensorBody", _sensing(_OF_BODY, "Position Velocity")),
-    "point_sensed:SensorMarker": Way(
-        "SensorMarker", _sensing("SensorMarker(markerNumber=markers[0]", "Position Velocity")
-    ),
-    "body_displaced": Way("SensorBody: Displacement", _sensing(_OF_BODY, "Displacement Rotation")),
-    "lidar_beams": Way("AddLidar", _LIDAR),
-    "friction_stribeck": Way(
-        "StribeckFunction",
-        f"from exudyn.physics import StribeckFunction\nvalue = [StribeckFunction(x, *{list(FRICTION)}) for x in v]",
-    ),
-    "friction_regularized": Way(
-        "RegularizedFriction",
-        "from exudyn.physics import RegularizedFriction\n"
-        f"d, s, k, _, w = {list(FRICTION)}\nvalue = [RegularizedFriction(x, d, s, w, 2 * w, k) for x in v]",
-    ),
-    "stress_von_mises": Way(
-        "VonMisesStress", "from exudyn.physics import VonMisesStress\nvalue = [VonMisesStress([*v, *a])]"
-    ),
-    "smooth_step": Way(
-        "SmoothStep, SmoothStepDerivative",
-        "value = [f(x, -0.25, 0.5, -0.5, 1.5) for f in (ut.SmoothStep, ut.SmoothStepDerivative) for x in v]",
-    ),
-}
+} | ways_of(f"""
+== connector_gravity | ObjectConnectorGravity | {_acting(_GRAVITY)}
+== connector_of_coordinates | ObjectConnectorCoordinateSpringDamper
+{_MASSES}mbs.AddObject(items.ObjectConnectorCoordinateSpringDamper({_OF_COORDINATES})){_FORCES}
+== connector_of_coordinates:Ext | ObjectConnectorCoordinateSpringDamperExt
+{_MASSES}mbs.AddObject(items.ObjectConnectorCoordinateSpringDamperExt({_OF_COORDINATES})){_FORCES}
+== connector_of_coordinates:user function | ObjectConnectorCoordinateSpringDamper, springForceUserFunction
+{_MASSES}{_COORDINATE_USER}{_FORCES}
+== load_before | LoadForceVector, LoadTorqueVector | {_loads(False)}
+== load_before:user function | loadVectorUserFunction | {_USER_LOADS}
+== load_following | LoadForceVector, LoadTorqueVector, bodyFixed | {_loads(True)}
+== body_sensed | SensorBody | {_sensing(_OF_BODY, _OUTPUTS)}
+== point_sensed | SensorBody | {_sensing(_OF_BODY, "Position Velocity")}
+== point_sensed:SensorMarker | SensorMarker | {_sensing("SensorMarker(markerNumber=markers[0]", "Position Velocity")}
+== body_displaced | SensorBody: Displacement | {_sensing(_OF_BODY, "Displacement Rotation")}
+== lidar_beams | AddLidar | {_LIDAR}
+== friction_stribeck | StribeckFunction
+from exudyn.physics import StribeckFunction
+value = [StribeckFunction(x, *{list(FRICTION)}) for x in v]
+== friction_regularized | RegularizedFriction
+from exudyn.physics import RegularizedFriction
+d, s, k, _, w = {list(FRICTION)}
+value = [RegularizedFriction(x, d, s, w, 2 * w, k) for x in v]
+== stress_von_mises | VonMisesStress | from exudyn.physics import VonMisesStress\nvalue = [VonMisesStress([*v, *a])]
+== smooth_step | SmoothStep, SmoothStepDerivative
+value = [f(x, -0.25, 0.5, -0.5, 1.5) for f in (ut.SmoothStep, ut.SmoothStepDerivative) for x in v]
+""")

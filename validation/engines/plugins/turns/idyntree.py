@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...truth.geometry.poses import CENTRE, MASS, MOMENTS
-from ..writing.source import HALF_TURNS, ON_END, Way
+from ..writing.source import HALF_TURNS, ON_END, Way, ways_of
 
 IMPORTS = ("import idyntree.bindings as iDynTree",)
 # Mass, m c, Ixx, Ixy, Ixz, Iyy, Iyz, Izz of iDynTree, in the order that has Iyy before Ixz.
@@ -29,145 +29,119 @@ I = iDynTree.SpatialInertia({MASS}, iDynTree.Position(*c), body(about + {MASS} *
 _AGAIN = "J = iDynTree.SpatialInertia()\nJ.{}\nvalue = J.asMatrix().toNumPy()"
 _LINE = "u = v + [4.0, -8.0, 8.0]\nline = iDynTree.Axis(iDynTree.Direction(*u), iDynTree.Position(*{}))\n"
 
-WAYS = {
-    "rotation_matrix": Way("Rotation.RotationFromQuaternion", _R + _ROWS.format(of="R")),
-    "rotation_matrix:asQuaternion": Way(
-        "Rotation.asQuaternion", _R + _ROWS.format(of="iDynTree.Rotation.RotationFromQuaternion(R.asQuaternion())")
-    ),
-    "rotation_matrix:asRPY": Way(
-        "Rotation.asRPY, RPY", _R + _ROWS.format(of="iDynTree.Rotation.RPY(*R.asRPY().toNumPy())")
-    ),
-    "rotation_half_turns": Way(
-        "Rotation.asQuaternion of a half turn",
-        f"{HALF_TURNS}value = [iDynTree.Rotation.RotationFromQuaternion("
-        "iDynTree.Rotation.FromPython(H).asQuaternion()).toNumPy().ravel() for H in half_turns]",
-    ),
-    "rotation_composed": Way("Rotation * Rotation", _TWO + _ROWS.format(of="(R * Q)")),
-    "rotation_composed:compose": Way("Rotation.compose", _TWO + _ROWS.format(of="iDynTree.Rotation.compose(R, Q)")),
-    "rotation_inverse": Way("Rotation.inverse", _R + _ROWS.format(of="R.inverse()")),
-    "turned_vector": Way("Rotation * Position", f"{_R}value = (R * iDynTree.Position(*v)).toNumPy()"),
-    "rotation_logarithm": Way("Rotation.log", f"{_R}value = R.log().toNumPy()"),
-    "rotation_of_rpy": Way("Rotation.RPY", _ROWS.format(of="iDynTree.Rotation.RPY(*v)")),
-    "rotation_of_rpy:RotX": Way(
-        "Rotation.RotX, RotY, RotZ",
-        "turn = iDynTree.Rotation\n" + _ROWS.format(of="(turn.RotZ(v[2]) * turn.RotY(v[1]) * turn.RotX(v[0]))"),
-    ),
-    "rotation_to_rpy": Way("Rotation.asRPY", f"{_R}value = R.asRPY().toNumPy()"),
-    "rotations_on_end": Way(
-        "Rotation.asRPY, RPY",
-        f"{ON_END}value = [iDynTree.Rotation.RPY(*iDynTree.Rotation.FromPython(H).asRPY().toNumPy())"
-        ".toNumPy().ravel() for H in on_end]",
-    ),
-    "rpy_rates": Way(
-        "Rotation.RPYRightTrivializedDerivativeInverse",
-        "value = iDynTree.Rotation.RPYRightTrivializedDerivativeInverse(*v).toNumPy()",
-    ),
-    "rpy_rates:RPYRightTrivializedDerivative": Way(
-        "Rotation.RPYRightTrivializedDerivative",
-        "value = np.linalg.inv(iDynTree.Rotation.RPYRightTrivializedDerivative(*v).toNumPy())",
-    ),
-    "rpy_rates_rate": Way(
-        "Rotation.RPYRightTrivializedDerivativeInverseRateOfChange",
-        "value = iDynTree.Rotation.RPYRightTrivializedDerivativeInverseRateOfChange(*v, *a).toNumPy()",
-    ),
-    "rpy_rates_rate:RPYRightTrivializedDerivativeRateOfChange": Way(
-        "Rotation.RPYRightTrivializedDerivativeRateOfChange",
-        "B = iDynTree.Rotation.RPYRightTrivializedDerivativeInverse(*v).toNumPy()\n"
-        "value = -B @ iDynTree.Rotation.RPYRightTrivializedDerivativeRateOfChange(*v, *a).toNumPy() @ B",
-    ),
-    "rotation_vector_speeds": Way(
-        "Rotation.leftJacobian", f"value = iDynTree.Rotation.leftJacobian({_VECTOR.format('tau')}).toNumPy().T"
-    ),
-    "rotation_vector_rates_fixed": Way(
-        "Rotation.leftJacobianInverse",
-        f"value = iDynTree.Rotation.leftJacobianInverse({_VECTOR.format('v')}).toNumPy()",
-    ),
-    "pose_composed": Way("Transform * Transform", _X + _FLAT.format(of="(X * Y)")),
-    "pose_composed:compose": Way("Transform.compose", _X + _FLAT.format(of="iDynTree.Transform.compose(X, Y)")),
-    "pose_composed:fromHomogeneousTransform": Way(
-        "Transform.fromHomogeneousTransform",
-        f"{_X}Z = iDynTree.Transform.Identity()\n"
-        "Z.fromHomogeneousTransform(Y.asHomogeneousTransform())\n" + _FLAT.format(of="(X * Z)"),
-    ),
-    "pose_inverse": Way("Transform.inverse", _X + _FLAT.format(of="X.inverse()")),
-    "pose_relative": Way("Transform.inverse, *", _X + _FLAT.format(of="(X.inverse() * Y)")),
-    "pose_unset": Way("Transform.Identity", _FLAT.format(of="iDynTree.Transform.Identity()")),
-    "pose_of_point": Way("Transform * Position", f"{_X}value = (X * iDynTree.Position(*v)).toNumPy()"),
-    "pose_logarithm": Way("Transform.log", f"{_X}value = X.log().asVector().toNumPy()"),
-    "pose_difference": Way("Transform.log", f"{_X}value = (X.inverse() * Y).log().asVector().toNumPy()"),
-    "pose_exponential": Way("Twist.exp", _V + _FLAT.format(of="V.exp()")),
-    "twist_transform": Way("Transform.asAdjointTransform", f"{_X}value = X.asAdjointTransform().toNumPy()"),
-    "twist_transform:Twist": Way("Transform * Twist", _X + _EYE.format(of="(X * iDynTree.Twist.FromPython(e))")),
-    "twist_transform_back": Way(
-        "Transform.inverse, asAdjointTransform", f"{_X}value = X.inverse().asAdjointTransform().toNumPy()"
-    ),
-    "wrench_transform": Way(
-        "Transform.asAdjointTransformWrench", f"{_X}value = X.asAdjointTransformWrench().toNumPy()"
-    ),
-    "wrench_transform:Wrench": Way("Transform * Wrench", _X + _EYE.format(of="(X * iDynTree.Wrench.FromPython(e))")),
-    "wrench_transform_back": Way(
-        "Transform.inverse, asAdjointTransformWrench",
-        f"{_X}value = X.inverse().asAdjointTransformWrench().toNumPy()",
-    ),
-    "twist_cross": Way("Twist.asCrossProductMatrix", f"{_V}value = V.asCrossProductMatrix().toNumPy()"),
-    "twist_cross:cross": Way("Twist.cross", _V + _EYE.format(of="V.cross(iDynTree.Twist.FromPython(e))")),
-    "wrench_cross": Way("Twist.asCrossProductMatrixWrench", f"{_V}value = V.asCrossProductMatrixWrench().toNumPy()"),
-    "wrench_cross:cross": Way("Twist.cross of wrenches", _V + _EYE.format(of="V.cross(iDynTree.Wrench.FromPython(e))")),
-    "power": Way("Twist.dot", f"{_V}{_F}value = [V.dot(F)]"),
-    "power:Wrench": Way("Wrench.dot", f"{_V}{_F}value = [F.dot(V)]"),
-    "spatial_inertia": Way("SpatialInertia.asMatrix", f"{_I}value = I.asMatrix().toNumPy()"),
-    "spatial_inertia:fromRotationalInertiaWrtCenterOfMass": Way(
-        "SpatialInertia.fromRotationalInertiaWrtCenterOfMass",
-        _I + _AGAIN.format(f"fromRotationalInertiaWrtCenterOfMass({MASS}, iDynTree.Position(*c), body(about))"),
-    ),
-    "spatial_inertia:fromVector": Way(
-        "SpatialInertia.asVector, fromVector", _I + _AGAIN.format("fromVector(I.asVector())")
-    ),
-    "spatial_inertia:RigidBodyInertiaNonLinearParametrization": Way(
-        "RigidBodyInertiaNonLinearParametrization",
-        f"{_I}N = iDynTree.RigidBodyInertiaNonLinearParametrization()\nN.fromRigidBodyInertia(I)\n"
-        "value = N.toRigidBodyInertia().asMatrix().toNumPy()",
-    ),
-    "spatial_inertia:of the mass centre": Way(
-        "SpatialInertia.getCenterOfMass, getRotationalInertiaWrtCenterOfMass",
-        _I
-        + _AGAIN.format(
-            "fromRotationalInertiaWrtCenterOfMass("
-            "I.getMass(), I.getCenterOfMass(), I.getRotationalInertiaWrtCenterOfMass())"
+WAYS = (
+    ways_of(f"""
+== rotation_matrix | Rotation.RotationFromQuaternion | {_R}{_ROWS.format(of="R")}
+== rotation_matrix:asQuaternion | Rotation.asQuaternion
+{_R}{_ROWS.format(of="iDynTree.Rotation.RotationFromQuaternion(R.asQuaternion())")}
+== rotation_matrix:asRPY | Rotation.asRPY, RPY | {_R}{_ROWS.format(of="iDynTree.Rotation.RPY(*R.asRPY().toNumPy())")}
+""")
+    | {
+        "rotation_half_turns": Way(
+            "Rotation.asQuaternion of a half turn",
+            f"{HALF_TURNS}value = [iDynTree.Rotation.RotationFromQuaternion("
+            "iDynTree.Rotation.FromPython(H).asQuaternion()).toNumPy().ravel() for H in half_turns]",
         ),
-    ),
-    "inertia_parameters": Way("SpatialInertia.asVector", f"{_I}value = I.asVector().toNumPy()[list({PARAMETERS})]"),
-    "spatial_inertia_inverse": Way("SpatialInertia.getInverse", f"{_I}value = I.getInverse().toNumPy()"),
-    "spatial_inertia_placed": Way("Transform * SpatialInertia", f"{_X}{_I}value = (X * I).asMatrix().toNumPy()"),
-    "spatial_inertia_sum": Way("SpatialInertia + SpatialInertia", f"{_X}{_I}value = (I + X * I).asMatrix().toNumPy()"),
-    "spatial_inertia_sum:combine": Way(
-        "SpatialInertia.combine", f"{_X}{_I}value = iDynTree.SpatialInertia.combine(I, X * I).asMatrix().toNumPy()"
-    ),
-    "spatial_momentum": Way("SpatialInertia * Twist", f"{_I}{_V}value = (I * V).toNumPy()"),
-    "spatial_momentum_cross": Way("SpatialInertia.biasWrench", f"{_I}{_V}value = I.biasWrench(V).toNumPy()"),
-    "spatial_momentum_cross_dv": Way(
-        "SpatialInertia.biasWrenchDerivative", f"{_I}{_V}value = I.biasWrenchDerivative(V).toNumPy()"
-    ),
-    "momentum_regressor": Way(
-        "SpatialInertia.momentumRegressor",
-        f"{_V}value = iDynTree.SpatialInertia.momentumRegressor(V).toNumPy()[:, list({PARAMETERS})]",
-    ),
-    "momentum_rate_regressor": Way(
-        "SpatialInertia.momentumDerivativeRegressor",
-        f"{_V}{_A}value = iDynTree.SpatialInertia.momentumDerivativeRegressor(V, A).toNumPy()[:, list({PARAMETERS})]",
-    ),
-    "pose_by_denavit": Way("TransformFromDH", _FLAT.format(of="iDynTree.TransformFromDH(*v, a[0])")),
-    "pose_by_modified_denavit": Way(
-        "TransformFromDHCraig1989", _FLAT.format(of="iDynTree.TransformFromDHCraig1989(*v, a[0])")
-    ),
-    "turn_about_line": Way(
-        "Axis.getRotationTransform", _LINE.format("a") + _FLAT.format(of="line.getRotationTransform(tau[0])")
-    ),
-    "twist_about_line": Way(
-        "Axis.getRotationTwist", f"{_LINE.format('a')}value = line.getRotationTwist(1.0).toNumPy()"
-    ),
-    "line_nearest": Way(
-        "Axis.getPointOnAxisClosestToGivenPoint",
-        f"{_LINE.format('a')}value = line.getPointOnAxisClosestToGivenPoint(iDynTree.Position(*tau)).toNumPy()",
-    ),
-}
+    }
+    | ways_of(f"""
+== rotation_composed | Rotation * Rotation | {_TWO}{_ROWS.format(of="(R * Q)")}
+== rotation_composed:compose | Rotation.compose | {_TWO}{_ROWS.format(of="iDynTree.Rotation.compose(R, Q)")}
+== rotation_inverse | Rotation.inverse | {_R}{_ROWS.format(of="R.inverse()")}
+== turned_vector | Rotation * Position | {_R}value = (R * iDynTree.Position(*v)).toNumPy()
+== rotation_logarithm | Rotation.log | {_R}value = R.log().toNumPy()
+== rotation_of_rpy | Rotation.RPY | {_ROWS.format(of="iDynTree.Rotation.RPY(*v)")}
+== rotation_of_rpy:RotX | Rotation.RotX, RotY, RotZ
+turn = iDynTree.Rotation
+{_ROWS.format(of="(turn.RotZ(v[2]) * turn.RotY(v[1]) * turn.RotX(v[0]))")}
+== rotation_to_rpy | Rotation.asRPY | {_R}value = R.asRPY().toNumPy()
+== rotations_on_end | Rotation.asRPY, RPY
+{ON_END}value = [iDynTree.Rotation.RPY(*iDynTree.Rotation.FromPython(H).asRPY().toNumPy()).toNumPy().ravel() for H in \
+on_end]
+== rpy_rates | Rotation.RPYRightTrivializedDerivativeInverse
+value = iDynTree.Rotation.RPYRightTrivializedDerivativeInverse(*v).toNumPy()
+== rpy_rates:RPYRightTrivializedDerivative | Rotation.RPYRightTrivializedDerivative
+value = np.linalg.inv(iDynTree.Rotation.RPYRightTrivializedDerivative(*v).toNumPy())
+== rpy_rates_rate | Rotation.RPYRightTrivializedDerivativeInverseRateOfChange
+value = iDynTree.Rotation.RPYRightTrivializedDerivativeInverseRateOfChange(*v, *a).toNumPy()
+== rpy_rates_rate:RPYRightTrivializedDerivativeRateOfChange | Rotation.RPYRightTrivializedDerivativeRateOfChange
+B = iDynTree.Rotation.RPYRightTrivializedDerivativeInverse(*v).toNumPy()
+value = -B @ iDynTree.Rotation.RPYRightTrivializedDerivativeRateOfChange(*v, *a).toNumPy() @ B
+== rotation_vector_speeds | Rotation.leftJacobian
+value = iDynTree.Rotation.leftJacobian({_VECTOR.format("tau")}).toNumPy().T
+== rotation_vector_rates_fixed | Rotation.leftJacobianInverse
+value = iDynTree.Rotation.leftJacobianInverse({_VECTOR.format("v")}).toNumPy()
+== pose_composed | Transform * Transform | {_X}{_FLAT.format(of="(X * Y)")}
+== pose_composed:compose | Transform.compose | {_X}{_FLAT.format(of="iDynTree.Transform.compose(X, Y)")}
+== pose_composed:fromHomogeneousTransform | Transform.fromHomogeneousTransform
+{_X}Z = iDynTree.Transform.Identity()
+Z.fromHomogeneousTransform(Y.asHomogeneousTransform())
+{_FLAT.format(of="(X * Z)")}
+== pose_inverse | Transform.inverse | {_X}{_FLAT.format(of="X.inverse()")}
+== pose_relative | Transform.inverse, * | {_X}{_FLAT.format(of="(X.inverse() * Y)")}
+== pose_unset | Transform.Identity | {_FLAT.format(of="iDynTree.Transform.Identity()")}
+== pose_of_point | Transform * Position | {_X}value = (X * iDynTree.Position(*v)).toNumPy()
+== pose_logarithm | Transform.log | {_X}value = X.log().asVector().toNumPy()
+== pose_difference | Transform.log | {_X}value = (X.inverse() * Y).log().asVector().toNumPy()
+== pose_exponential | Twist.exp | {_V}{_FLAT.format(of="V.exp()")}
+== twist_transform | Transform.asAdjointTransform | {_X}value = X.asAdjointTransform().toNumPy()
+== twist_transform:Twist | Transform * Twist | {_X}{_EYE.format(of="(X * iDynTree.Twist.FromPython(e))")}
+== twist_transform_back | Transform.inverse, asAdjointTransform | {_X}value = X.inverse().asAdjointTransform().toNumPy()
+== wrench_transform | Transform.asAdjointTransformWrench | {_X}value = X.asAdjointTransformWrench().toNumPy()
+== wrench_transform:Wrench | Transform * Wrench | {_X}{_EYE.format(of="(X * iDynTree.Wrench.FromPython(e))")}
+== wrench_transform_back | Transform.inverse, asAdjointTransformWrench
+{_X}value = X.inverse().asAdjointTransformWrench().toNumPy()
+== twist_cross | Twist.asCrossProductMatrix | {_V}value = V.asCrossProductMatrix().toNumPy()
+== twist_cross:cross | Twist.cross | {_V}{_EYE.format(of="V.cross(iDynTree.Twist.FromPython(e))")}
+== wrench_cross | Twist.asCrossProductMatrixWrench | {_V}value = V.asCrossProductMatrixWrench().toNumPy()
+== wrench_cross:cross | Twist.cross of wrenches | {_V}{_EYE.format(of="V.cross(iDynTree.Wrench.FromPython(e))")}
+== power | Twist.dot | {_V}{_F}value = [V.dot(F)]
+== power:Wrench | Wrench.dot | {_V}{_F}value = [F.dot(V)]
+== spatial_inertia | SpatialInertia.asMatrix | {_I}value = I.asMatrix().toNumPy()
+""")
+    | {
+        "spatial_inertia:fromRotationalInertiaWrtCenterOfMass": Way(
+            "SpatialInertia.fromRotationalInertiaWrtCenterOfMass",
+            _I + _AGAIN.format(f"fromRotationalInertiaWrtCenterOfMass({MASS}, iDynTree.Position(*c), body(about))"),
+        ),
+    }
+    | ways_of(f"""
+== spatial_inertia:fromVector | SpatialInertia.asVector, fromVector | {_I}{_AGAIN.format("fromVector(I.asVector())")}
+== spatial_inertia:RigidBodyInertiaNonLinearParametrization | RigidBodyInertiaNonLinearParametrization
+{_I}N = iDynTree.RigidBodyInertiaNonLinearParametrization()
+N.fromRigidBodyInertia(I)
+value = N.toRigidBodyInertia().asMatrix().toNumPy()
+""")
+    | {
+        "spatial_inertia:of the mass centre": Way(
+            "SpatialInertia.getCenterOfMass, getRotationalInertiaWrtCenterOfMass",
+            _I
+            + _AGAIN.format(
+                "fromRotationalInertiaWrtCenterOfMass("
+                "I.getMass(), I.getCenterOfMass(), I.getRotationalInertiaWrtCenterOfMass())"
+            ),
+        ),
+    }
+    | ways_of(f"""
+== inertia_parameters | SpatialInertia.asVector | {_I}value = I.asVector().toNumPy()[list({PARAMETERS})]
+== spatial_inertia_inverse | SpatialInertia.getInverse | {_I}value = I.getInverse().toNumPy()
+== spatial_inertia_placed | Transform * SpatialInertia | {_X}{_I}value = (X * I).asMatrix().toNumPy()
+== spatial_inertia_sum | SpatialInertia + SpatialInertia | {_X}{_I}value = (I + X * I).asMatrix().toNumPy()
+== spatial_inertia_sum:combine | SpatialInertia.combine
+{_X}{_I}value = iDynTree.SpatialInertia.combine(I, X * I).asMatrix().toNumPy()
+== spatial_momentum | SpatialInertia * Twist | {_I}{_V}value = (I * V).toNumPy()
+== spatial_momentum_cross | SpatialInertia.biasWrench | {_I}{_V}value = I.biasWrench(V).toNumPy()
+== spatial_momentum_cross_dv | SpatialInertia.biasWrenchDerivative | {_I}{_V}value = I.biasWrenchDerivative(V).toNumPy()
+== momentum_regressor | SpatialInertia.momentumRegressor
+{_V}value = iDynTree.SpatialInertia.momentumRegressor(V).toNumPy()[:, list({PARAMETERS})]
+== momentum_rate_regressor | SpatialInertia.momentumDerivativeRegressor
+{_V}{_A}value = iDynTree.SpatialInertia.momentumDerivativeRegressor(V, A).toNumPy()[:, list({PARAMETERS})]
+== pose_by_denavit | TransformFromDH | {_FLAT.format(of="iDynTree.TransformFromDH(*v, a[0])")}
+== pose_by_modified_denavit | TransformFromDHCraig1989
+{_FLAT.format(of="iDynTree.TransformFromDHCraig1989(*v, a[0])")}
+== turn_about_line | Axis.getRotationTransform
+{_LINE.format("a")}{_FLAT.format(of="line.getRotationTransform(tau[0])")}
+== twist_about_line | Axis.getRotationTwist | {_LINE.format("a")}value = line.getRotationTwist(1.0).toNumPy()
+== line_nearest | Axis.getPointOnAxisClosestToGivenPoint
+{_LINE.format("a")}value = line.getPointOnAxisClosestToGivenPoint(iDynTree.Position(*tau)).toNumPy()
+""")
+)

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 from ...interface import Convention, Tree, Unsupported
 from ..writing.numbering import numbered
-from ..writing.source import HALF_TURNS, ON_END, Source, SourcePlugin, Way
+from ..writing.source import HALF_TURNS, ON_END, Source, SourcePlugin, Way, ways_of
 from . import source
 
 _R = "R, Q = mink.SO3(q), mink.SO3(q2)\n"
@@ -17,33 +17,28 @@ def _flat(of: str) -> str:
 
 
 _MATRIX = "value = ({of}).as_matrix().ravel()"
-_ROTATIONS = {
-    "rotation_matrix": Way("SO3.as_matrix", _R + _MATRIX.format(of="R")),
-    "rotation_matrix:from_matrix": Way(
-        "SO3.from_matrix", _R + _MATRIX.format(of="mink.SO3.from_matrix(R.as_matrix())")
-    ),
-    "rotation_composed": Way("SO3.multiply", _R + _MATRIX.format(of="R @ Q")),
-    "rotation_angle": Way("SO3.minus", f"{_R}value = [np.linalg.norm(Q.minus(R))]"),
-    "rotation_logarithm": Way("SO3.log", f"{_R}value = R.log()"),
-    "rotation_exponential": Way("SO3.exp", _MATRIX.format(of="mink.SO3.exp(v)")),
-    "rotation_exponential_of_turns": Way("SO3.exp", _MATRIX.format(of="mink.SO3.exp(16 * v)")),
-    "rotation_half_turns": Way(
-        "SO3.from_matrix", f"{HALF_TURNS}value = [mink.SO3.from_matrix(H).as_matrix().ravel() for H in half_turns]"
-    ),
-    "rotation_vector_speeds": Way("SO3.rjac", "value = mink.SO3.rjac(tau)"),
-    "rotation_vector_speeds:ljac": Way("SO3.ljac", "value = mink.SO3.ljac(tau).T"),
-    "rotation_vector_rates": Way("SO3.rjacinv", "value = mink.SO3.rjacinv(tau)"),
-    "rotation_vector_rates_fixed": Way("SO3.ljacinv", "value = mink.SO3.ljacinv(v)"),
-    "rotation_halfway": Way("SO3.interpolate", _R + _MATRIX.format(of="R.interpolate(Q, 0.25)")),
-    "rotation_of_rpy": Way("SO3.from_rpy_radians", _MATRIX.format(of="mink.SO3.from_rpy_radians(*v)")),
-    "rotations_on_end": Way(
-        "SO3.as_rpy_radians",
-        f"{ON_END}value = [mink.SO3.from_rpy_radians(*mink.SO3.from_matrix(H).as_rpy_radians()).as_matrix().ravel()"
-        " for H in on_end]",
-    ),
-    "rotation_to_rpy": Way("SO3.as_rpy_radians", f"{_R}value = [*R.as_rpy_radians()]"),
-    "rotation_matrix:inverse": Way("SO3.inverse", f"{_R}value = R.inverse().as_matrix().T.ravel()"),
-}
+_ROTATIONS = ways_of(f"""
+== rotation_matrix | SO3.as_matrix | {_R}{_MATRIX.format(of="R")}
+== rotation_matrix:from_matrix | SO3.from_matrix | {_R}{_MATRIX.format(of="mink.SO3.from_matrix(R.as_matrix())")}
+== rotation_composed | SO3.multiply | {_R}{_MATRIX.format(of="R @ Q")}
+== rotation_angle | SO3.minus | {_R}value = [np.linalg.norm(Q.minus(R))]
+== rotation_logarithm | SO3.log | {_R}value = R.log()
+== rotation_exponential | SO3.exp | {_MATRIX.format(of="mink.SO3.exp(v)")}
+== rotation_exponential_of_turns | SO3.exp | {_MATRIX.format(of="mink.SO3.exp(16 * v)")}
+== rotation_half_turns | SO3.from_matrix
+{HALF_TURNS}value = [mink.SO3.from_matrix(H).as_matrix().ravel() for H in half_turns]
+== rotation_vector_speeds | SO3.rjac | value = mink.SO3.rjac(tau)
+== rotation_vector_speeds:ljac | SO3.ljac | value = mink.SO3.ljac(tau).T
+== rotation_vector_rates | SO3.rjacinv | value = mink.SO3.rjacinv(tau)
+== rotation_vector_rates_fixed | SO3.ljacinv | value = mink.SO3.ljacinv(v)
+== rotation_halfway | SO3.interpolate | {_R}{_MATRIX.format(of="R.interpolate(Q, 0.25)")}
+== rotation_of_rpy | SO3.from_rpy_radians | {_MATRIX.format(of="mink.SO3.from_rpy_radians(*v)")}
+== rotations_on_end | SO3.as_rpy_radians
+{ON_END}value = [mink.SO3.from_rpy_radians(*mink.SO3.from_matrix(H).as_rpy_radians()).as_matrix().ravel() for H in \
+on_end]
+== rotation_to_rpy | SO3.as_rpy_radians | {_R}value = [*R.as_rpy_radians()]
+== rotation_matrix:inverse | SO3.inverse | {_R}value = R.inverse().as_matrix().T.ravel()
+""")
 _PLACEMENTS = {
     "pose_composed": Way("SE3.multiply", f"{_X}{_flat('X @ Y')}"),
     "pose_unset": Way("SE3.identity", _flat("mink.SE3.identity()")),
@@ -70,23 +65,21 @@ for row, bound in zip(*found):
     k = np.argmax(np.abs(row))
     place = m.jnt_qposadr[m.dof_jntid[k]]
     value[k, int(row[k] > 0)] = configuration.q[place] + bound / row[k]"""
-_KINEMATICS = {
-    "joint_limits": Way("ConfigurationLimit", _LIMITS),
-    "joint_limits_of_some": Way("ConfigurationLimit", _LIMITS.replace("[-np.inf, np.inf]", "[0.0, 0.0]")),
-    "link_poses": Way(
-        "get_transform_frame_to_world",
-        "configuration = mink.Configuration(m, q)\nvalue = []\nfor name in links:\n"
-        "    T = configuration.get_transform_frame_to_world(name, 'body').as_matrix()\n"
-        "    value.append([*T[:3, 3], *T[:3, :3].flat])",
-    ),
-    "jacobian_local": Way(
-        "get_frame_jacobian",
-        "configuration = mink.Configuration(m, q)\n"
-        "value = [configuration.get_frame_jacobian(name, 'body') for name in links]",
-    ),
-    "integrate": Way("integrate", "value = mink.Configuration(m, q).integrate(v2, 1.0)"),
-    "mass_matrix": Way("get_inertia_matrix", "value = mink.Configuration(m, q).get_inertia_matrix()"),
-}
+_KINEMATICS = ways_of(f"""
+== joint_limits | ConfigurationLimit | {_LIMITS}
+== joint_limits_of_some | ConfigurationLimit | {_LIMITS.replace("[-np.inf, np.inf]", "[0.0, 0.0]")}
+== link_poses | get_transform_frame_to_world
+configuration = mink.Configuration(m, q)
+value = []
+for name in links:
+    T = configuration.get_transform_frame_to_world(name, 'body').as_matrix()
+    value.append([*T[:3, 3], *T[:3, :3].flat])
+== jacobian_local | get_frame_jacobian
+configuration = mink.Configuration(m, q)
+value = [configuration.get_frame_jacobian(name, 'body') for name in links]
+== integrate | integrate | value = mink.Configuration(m, q).integrate(v2, 1.0)
+== mass_matrix | get_inertia_matrix | value = mink.Configuration(m, q).get_inertia_matrix()
+""")
 _CHARTS = {
     **{
         (kind, form): chart

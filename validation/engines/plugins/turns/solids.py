@@ -10,7 +10,7 @@ from collections.abc import Iterable, Mapping
 
 from ...truth.geometry.poses import MASS
 from ...truth.geometry.shapes import BEYOND, DISTANCES, HALF, MET, NEAR_FACE, RADIUS, SIDES, WITHIN
-from ..writing.source import Way
+from ..writing.source import Way, ways_of
 
 # Solid -> radius and half length, half sides or semi-axes; the same with whole lengths and sides.
 _HALVES = {
@@ -167,13 +167,11 @@ _PAIR = (
 _TURN = "R, Q = pin.Quaternion(q).matrix(), pin.Quaternion(q2).matrix()\n"
 PINOCCHIO = (
     _distances("computeDistances", _COAL, f"{_TURN}X, Y = pin.SE3(R, a), pin.SE3(Q, {_BEYOND})\n{_PAIR}")
-    | {
-        "distance_ball_in_box": Way(
-            "computeDistances",
-            f"{_TURN}X, Y = pin.SE3(R, a + R @ {list(NEAR_FACE)}), pin.SE3(R, a)\n"
-            + _PAIR.replace("ONE", _COAL["ball"]).replace("OTHER", _COAL["box"]),
-        )
-    }
+    | ways_of(f"""
+== distance_ball_in_box | computeDistances
+{_TURN}X, Y = pin.SE3(R, a + R @ {list(NEAR_FACE)}), pin.SE3(R, a)
+{_PAIR.replace("ONE", _COAL["ball"]).replace("OTHER", _COAL["box"])}
+""")
     | {
         f"moments_{one}": Way(
             f"Inertia.From{of.partition('(')[0]}", f"{_X}value = np.diag(pin.Inertia.From{of}.inertia)"
@@ -238,15 +236,12 @@ DRAKE = (
         )
         for other in ("capsule", "cylinder", "box")
     }
-    | {
-        "distance_ball_in_box": Way(
-            "ComputeSignedDistancePairClosestPoints",
-            (_SCENE + _IN_BOX + _OF_TWO + _SIGNED).replace("ONE", _DRAKE["ball"]).replace("OTHER", _DRAKE["box"]),
-        ),
-        "distance_ball_in_box:point": Way(
-            "ComputeSignedDistanceToPoint", _SCENE + _IN_BOX + _TO_POINT.replace("OTHER", _DRAKE["box"])
-        ),
-    }
+    | ways_of(f"""
+== distance_ball_in_box | ComputeSignedDistancePairClosestPoints
+{(_SCENE + _IN_BOX + _OF_TWO + _SIGNED).replace("ONE", _DRAKE["ball"]).replace("OTHER", _DRAKE["box"])}
+== distance_ball_in_box:point | ComputeSignedDistanceToPoint
+{_SCENE}{_IN_BOX}{_TO_POINT.replace("OTHER", _DRAKE["box"])}
+""")
     | {
         f"moments_{one}": Way(
             f"UnitInertia.{of.partition('(')[0]}", f"{_X}value = {MASS} * drake.UnitInertia.{of}.get_moments()"
@@ -260,14 +255,12 @@ DRAKE = (
             "capsule": "SolidCapsule(x[0], x[1], [0, 0, 1])",
         }.items()
     }
-    | {
-        "principal_moments": Way(
-            "CalcPrincipalMomentsOfInertia",
-            f"R = drake.Quaternion(q).rotation()\n{_SYMMETRIC}"
-            "I = drake.RotationalInertia(*np.diag(A), A[0, 1], A[0, 2], A[1, 2])\n"
-            "value = I.CalcPrincipalMomentsOfInertia()",
-        ),
-    }
+    | ways_of(f"""
+== principal_moments | CalcPrincipalMomentsOfInertia
+R = drake.Quaternion(q).rotation()
+{_SYMMETRIC}I = drake.RotationalInertia(*np.diag(A), A[0, 1], A[0, 2], A[1, 2])
+value = I.CalcPrincipalMomentsOfInertia()
+""")
 )
 
 # DART: frames with shapes, by FCL: its own detector knows no distances, and this one no capsules, as it says.

@@ -63,6 +63,30 @@ class Way(NamedTuple):
     built: tuple[tuple[str, str], ...] = ()
 
 
+def ways_of(text: str) -> dict[str, Way]:
+    """Ways by name, each as `== name | native | code`, or with the code on the lines after `== name | native`.
+
+    Args:
+        text: The ways in their order. After a name may stand ` ~ ` and the slack, a number or a function and its steps;
+            `== #` begins a comment.
+
+    Raises:
+        ValueError: A name stands twice, or without what the engine calls it.
+    """
+    made: dict[str, Way] = {}
+    for one in re.split("^== ", text, flags=re.MULTILINE)[1:]:
+        if not one.startswith("#"):
+            head, *code = one.removesuffix("\n").split("\n")
+            name, native, *first = head.split(" | ", 2)
+            name, _, slack = name.partition(" ~ ")
+            if name in made:
+                raise ValueError(f"two ways of one name: {name}")
+            function, *steps = slack.split() or ["0"]
+            error = Steps(function, *map(float, steps)) if steps else float(function)
+            made[name] = Way(native, "\n".join((*first, *code)), error)
+    return made
+
+
 @dataclass(frozen=True)
 class Source:
     """Text that builds a tree's model.
