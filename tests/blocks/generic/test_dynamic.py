@@ -231,10 +231,6 @@ def test_a_continuous_kalman_filter_finds_a_state_and_weighs_noise() -> None:
     diagram.add(KalmanFilter(name="k", A=A, B=[[0.0], [0.0]], C=C, Q=[0.0, 1e5], R=0.1), u="none.y", y="plant.y")
     found = sf.Simulation(diagram).run(4.0, dt=1e-3)
     np.testing.assert_allclose(found["k.x"][-1], [np.cos(12.0), -3.0 * np.sin(12.0)], atol=1e-6)
-    with pytest.raises(sf.DescriptionError, match="no estimate that settles"):
-        KalmanFilter(name="k", A=np.diag([1.0, 2.0]), B=np.zeros((2, 1)), C=C, Q=1.0, R=1.0)
-    with pytest.raises(sf.DescriptionError, match="R are not weights"):
-        KalmanFilter(name="k", A=A, B=np.zeros((2, 1)), C=C, Q=1.0, R=0.0)
 
 
 def test_a_transport_delay_is_late_by_its_time() -> None:
@@ -251,8 +247,6 @@ def test_a_transport_delay_is_late_by_its_time() -> None:
         np.testing.assert_allclose(
             found["y"][: len(u)], (1 - share) * before[rows] + share * before[rows - 1], atol=1e-13
         )
-    with pytest.raises(sf.DescriptionError, match="delay is too long"):
-        TransportDelay(name="d", delay=100.0, period=0.01)
     ring = sf.Diagram("ring")
     ring.add(TransportDelay(name="d", delay=0.03, start=[1.0], period=0.01), u="half.y")
     ring.add(Gain(name="half", gain=0.5), u="d.y")
