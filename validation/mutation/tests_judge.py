@@ -17,11 +17,20 @@ from typing import Any
 # Folders of tests, and files, of what the study plants faults in.
 FOLDERS = (
     "description expr mechanics generator identities runtime simulation native diagrams blocks reference exports"
-    " interop base test_derived_once.py test_end_to_end.py"
+    " interop base test_derived_once.py test_end_to_end.py test_public_arguments.py test_public_nonsense.py"
 ).split()
 LIMIT = 300  # Of one test [s]: one that takes longer with a fault than this hangs.
 HUNG = 77
 MOST = 8  # Files of tests a module: all of them are imported before the first one runs.
+_CONTACTS = (
+    "tests/native/test_contact_problems.py",
+    "tests/simulation/test_rigid_contacts.py",
+    "tests/simulation/test_rigid_contacts_implicit.py",
+    "tests/simulation/test_rigid_contacts_in_batches.py",
+    "tests/simulation/test_landing.py",
+    "tests/simulation/test_contact_scenes.py",
+    "tests/simulation/test_rigid_heaps.py",
+)
 _BEAM_LIMITS = (
     "tests/simulation/test_beam_limit.py",
     "tests/simulation/test_stated_error.py",
@@ -61,6 +70,31 @@ _MIRRORS = {
         "tests/simulation/results/examination/test_input_impulses.py",
     ),
     "symofros/native/stepping/state/rotations.c": ("tests/simulation/stepping", "tests/runtime/test_manifold_c.py"),
+    "symofros/native/stepping/batches": (
+        "tests/simulation/stepping",
+        "tests/simulation/test_simulate_batch.py",
+        "tests/simulation/test_steppers.py",
+    ),
+    "symofros/native/stepping/contacts": ("tests/simulation", *_CONTACTS),
+    "symofros/native/stepping/contacts/sticking.c": ("tests/simulation", "tests/simulation/test_sticking.py"),
+    "symofros/native/stepping/events": (
+        "tests/simulation/stepping",
+        "tests/simulation/test_actions.py",
+        "tests/simulation/test_actions_by_hand.py",
+        "tests/simulation/test_within_steps.py",
+        "tests/simulation/test_landing.py",
+    ),
+    "symofros/native/stepping/events/formula_instants.c": (
+        "tests/expr/test_instants.py",
+        "tests/simulation/test_within_steps.py",
+    ),
+    "symofros/native/stepping/instances": (
+        "tests/exports/c/test_events.py",
+        "tests/exports/fmi/test_fmu_states.py",
+        "tests/exports/c/test_rigid_contacts.py",
+    ),
+    "symofros/native/stepping/posture": ("tests/simulation/analysis/kinematics",),
+    "symofros/native/tape": ("tests/generator/codegen/test_tape.py",),
     "symofros/native/interop": ("tests/interop", "tests/interop/test_casadi.py"),
     # What judges the bending of beams, by tables of the generator.
     "symofros/native/stepping/beams/beams.c": _BEAM_LIMITS,
@@ -73,6 +107,7 @@ _MIRRORS = {
         "tests/blocks/generic",
         "tests/diagrams/program",
     ),
+    "symofros/diagrams": ("tests/diagrams", "tests/diagrams/run/test_runs.py", "tests/diagrams/files/test_reading.py"),
     # Tests of what a user asks for, which have the names of the answers.
     "symofros/description/yaml": ("tests/description", "tests/description/test_files.py"),
     "symofros/description/urdf": (
@@ -95,6 +130,11 @@ _MIRRORS = {
         "tests/mechanics/beams/test_rod.py",
         "tests/mechanics/beams/test_rod_outputs.py",
     ),
+    "symofros/mechanics/dynamics/reactions.py": (
+        "tests/mechanics/dynamics",
+        "tests/simulation/test_conditions_by_forces.py",
+    ),
+    "symofros/mechanics/topology/sticking.py": ("tests/mechanics/topology", "tests/simulation/test_sticking.py"),
     "symofros/mechanics/topology/beams.py": (
         "tests/mechanics/topology",
         "tests/mechanics/topology/test_beams.py",
@@ -102,6 +142,14 @@ _MIRRORS = {
     ),
     "symofros/runtime/manifold.py": ("tests/runtime", "tests/simulation/analysis/test_rollout.py"),
     "symofros/runtime/methods/identification.py": ("tests/runtime", "tests/simulation/analysis/test_regressor.py"),
+    "symofros/simulation/analysis/sliding.py": ("tests/simulation/analysis", *_CONTACTS[1:]),
+    "symofros/simulation/stepping/batch_by_hand.py": (
+        "tests/simulation/stepping",
+        "tests/simulation/test_steppers.py",
+        "tests/simulation/test_actions_by_hand.py",
+    ),
+    "symofros/generator/codegen/manifold.py": ("tests/generator/codegen", "tests/runtime/test_manifold_c.py"),
+    "symofros/base": ("tests/base", "tests/test_public_arguments.py", "tests/test_public_nonsense.py"),
     "symofros/simulation/simulate_batch.py": ("tests/simulation", "tests/simulation/test_prescribed_motions.py"),
 }
 # What watches the whole of the mechanics, of motions.
@@ -216,7 +264,8 @@ def chosen(root: Path, module: str) -> list[str]:
     path = Path(module)
     folder_of_tests = Path("tests", *path.parts[1:-1])
     mirror = (folder_of_tests if (root / folder_of_tests).is_dir() else folder_of_tests.parent).as_posix()
-    mirrors = _MIRRORS.get(module, _MIRRORS.get(path.parent.as_posix(), (mirror,)))
+    places = (path, path.parent) if (root / folder_of_tests).is_dir() else (path, *path.parents)
+    mirrors = next((_MIRRORS[place.as_posix()] for place in places if place.as_posix() in _MIRRORS), (mirror,))
     general = _GENERAL.get("/".join(path.parts[:2]), ())
     name = _words(Path(path.name.partition(".")[0]))
     ranked = []

@@ -88,3 +88,31 @@ def test_error_follows_the_tolerance(name: str, method: str) -> None:
         assert run.outcome.ok
         off = np.abs([*model.difference(exact.q[-1], run.q[-1]), *(run.v[-1] - exact.v[-1])]).max()
         assert off < 100 * tolerance * max(1.0, float(np.abs(v).max()))
+
+
+@pytest.mark.parametrize("method", ["rodas4", "implicit_euler", "generalized_alpha"])
+def test_implicit_steps_by_laws_are_those_by_the_forces_that_they_state(method: str) -> None:
+    """Coupled and stiff for the step: what inputs depend on is in the Jacobian."""
+    forces = {"x": "-400*x + 90*y - 3*dx", "y": "50*x - 300*y + 2*dx - 5*dy"}
+    slides = [
+        sf.Joint("x", "prismatic", axis=(1, 0, 0), actuated=True),
+        sf.Joint("y", "prismatic", parent="bx", axis=(0, 1, 0), actuated=True),
+    ]
+    bodies = tuple(sf.RigidBody(f"b{joint.name}", joint, sf.Inertia(1.0)) for joint in slides)
+    stated = tuple(sf.VirtualPower(name, {f"d{name}": sf.formula(force)}) for name, force in forces.items())
+    runs = [
+        sf.simulate(
+            sf.compile(sf.System("slides", bodies, gravity=(0, 0, 0), virtual_power=power)),
+            [0.2, -0.1],
+            [1.0, 2.0],
+            1.0,
+            u=laws,
+            method=method,
+            dt=0.1,
+            adaptive=False if method == "rodas4" else None,
+        )
+        for power, laws in ((stated, None), ((), forces))
+    ]
+    for name in ("q", "v"):
+        expected, found = (getattr(run, name) for run in runs)
+        np.testing.assert_allclose(found, expected, rtol=0, atol=1e-11 * np.abs(expected).max())

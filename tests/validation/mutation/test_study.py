@@ -16,6 +16,7 @@ from validation.mutation.overlay import Overlay
 from validation.mutation.report import compose
 from validation.mutation.store import Store
 from validation.mutation.study import CHECK, LONGER, OUTPUTS, TESTS, Study, argued_faults
+from validation.mutation.tests_judge import _GENERAL, _MIRRORS
 
 ROOT = Path(__file__).parents[3]
 IDENTITY = Path("symofros", "runtime", "build", "identity.py")
@@ -156,3 +157,9 @@ def test_faults_that_are_argued_are_of_modules_that_exist(tmp_path: Path) -> Non
     with pytest.raises(sf.SymofrosError, match="no such module") as refused:
         argued_faults(tmp_path / "argued.json")
     assert refused.value.problems[0].found == gone
+
+
+def test_tests_that_modules_are_judged_by_exist() -> None:
+    places = {place for table in (_MIRRORS, _GENERAL) for named in table.values() for place in named}
+    assert [place for place in places if not (ROOT / place).exists()] == []
+    assert [module for module in (*_MIRRORS, *_GENERAL) if not (ROOT / module).exists()] == []

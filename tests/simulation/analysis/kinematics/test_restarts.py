@@ -11,7 +11,7 @@ from hypothesis import strategies as st
 
 import symofros as sf
 from symofros.base.arrays import Array
-from symofros.simulation.analysis.kinematics.restarts import default_start
+from symofros.simulation.analysis.kinematics.restarts import default_start, start_again
 from symofros.simulation.analysis.kinematics.targets import Task
 from tests.simulation.mechanisms import links
 
@@ -56,6 +56,19 @@ def test_angles_end_within_half_a_turn_of_the_guess_where_limits_let_them(
     assert whole == pytest.approx(round(whole), abs=1e-12)
     others = [x for k in (-1, 1) if abs(x := found[2] + 2.0 * np.pi * k) <= LIMIT]
     assert all(abs(found[2] - guess[2]) <= abs(x - guess[2]) + 1e-12 for x in others)
+
+
+@pytest.mark.parametrize("side", [1.0, -1.0, None])
+def test_of_drawn_starts_solutions_that_are_refused_are_none(side: float | None) -> None:
+    """An arm with an elbow to either side; None: nothing is refused."""
+    task = Task(arm(), {"l2.end": sf.Target([1.2, 0.0, 0.4])}, None, None)
+    solver, guess = task.solver, np.array([0.1, 0.2, 0.3])
+    solver.use(solver.everything, 1e-10, 1e-10)
+    refused = (lambda q: False) if side is None else (lambda q: bool(side * np.sin(q[1]) < 0.0))
+    assert start_again(solver, guess, guess, 60, 50, refused)
+    found = solver.end()[:3]
+    assert not refused(found) and np.abs(task.error(found)).max() < 1e-9
+    assert not start_again(solver, guess, guess, 12, 50, lambda _: True)
 
 
 def test_searches_start_within_limits() -> None:
