@@ -157,6 +157,10 @@ class Terms:
         return {item.name: value for item in fields(self) if (value := getattr(self, item.name)) is not None}
 
 
+# The least normal number: a signal minus it is below zero unless the signal is above zero, so that 0 and 1 cross zero.
+LEAST_ABOVE_ZERO = float(np.finfo(np.float64).tiny)
+
+
 @dataclass(frozen=True)
 class Crossing:
     """A value whose zeros are located in time.

@@ -11,7 +11,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.diagrams.block import Block, Crossing, Environment, EvaluationContext, Values
+from symofros.diagrams.block import LEAST_ABOVE_ZERO, Block, Crossing, Environment, EvaluationContext, Values
 from symofros.diagrams.conditional import ENABLED, AboveZero, Condition, Conditional, OnCondition, refused
 from symofros.diagrams.external_block import ExternalBlock
 from symofros.diagrams.tensor import Tensor
@@ -21,8 +21,6 @@ from symofros.errors import DescriptionError, Problem, did_you_mean
 _ENABLES, _DISABLES = "enables", "disables"
 # Its memory: whether it is enabled; outputs at the instant at which it was disabled; memory of the block itself.
 _ON, _HELD, _OWN = "on", "held_", "own_"
-# A signal from here on is above zero: one that is zero has not arrived there.
-_LEAST = float(np.finfo(np.float64).tiny)
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -108,7 +106,7 @@ class Enabled(OnCondition):
 
     def _level(self, context: EvaluationContext) -> Tensor:
         """The signal, so that it is below zero where it does not enable."""
-        return context.inputs[self.inputs[ENABLED]] - _LEAST
+        return context.inputs[self.inputs[ENABLED]] - LEAST_ABOVE_ZERO
 
 
 def on_condition(

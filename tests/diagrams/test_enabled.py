@@ -265,3 +265,17 @@ def test_a_state_machine_begins_anew_where_it_is_enabled() -> None:
     assert late == pytest.approx([0.3, WAVE[1] + 0.3, WAVE[3] + 0.3][: len(late)], abs=1e-9) and len(late) >= 2
     with pytest.raises(sf.DescriptionError, match="keeps instants"):
         whole({}).include("part", part, None, sf.Condition(enabled="signal.y"))
+
+
+@pytest.mark.parametrize("dt", [0.05, 0.01])
+def test_a_signal_that_passes_zero_where_a_step_ends_enables_there(dt: float) -> None:
+    diagram = sf.Diagram("whole")
+    diagram.add(blocks.Ramp(name="signal", start=-0.5))
+    part = sf.Diagram("part")
+    part.add(blocks.Constant(name="one", value=1.0))
+    part.add(blocks.Integrator(name="sum"), u="one.y")
+    part.outlets = {"y": "sum"}
+    diagram.include("part", part, None, sf.Condition(enabled="signal.y"))
+    simulation = sf.Simulation(diagram)
+    for run in (simulation.run(1.0, dt=dt), simulation.interpret(1.0, dt=dt)):
+        assert run["part.y"][-1] == pytest.approx(0.5, abs=1e-12)

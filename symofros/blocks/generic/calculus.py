@@ -11,7 +11,16 @@ import numpy as np
 
 from symofros.blocks.checks import choice, number, numbers, refuse
 from symofros.blocks.generic.nonlinear import ordered
-from symofros.diagrams.block import Block, Crossing, Environment, EvaluationContext, Port, Ports, Values
+from symofros.diagrams.block import (
+    LEAST_ABOVE_ZERO,
+    Block,
+    Crossing,
+    Environment,
+    EvaluationContext,
+    Port,
+    Ports,
+    Values,
+)
 from symofros.diagrams.tensor import Tensor
 
 _DIRECTIONS = ("none", "rising", "falling", "both")
@@ -44,13 +53,14 @@ class Integrator(Block):
     """y' = u, y(0) = start; sampled, y[k + 1] = y[k] + T u[k]; entry by entry.
 
     At a limit, which is located in time, it stands still as long as u pushes against it. A reset takes y back to its
-    start: continuous, where the input "reset" crosses zero, located in time; sampled, at the first sample after.
+    start where the input "reset" changes from zero or less to above zero (rising), or back (falling), as conditions of
+    parts do: continuous, located in time; sampled, at the first sample after.
 
     Attributes:
         start: First y, a number or one an entry, which also tells the shape inside loops.
         low: Lower limit.
         high: Upper limit.
-        reset: Crossings of the input "reset" that count: none (no such input), rising, falling, both.
+        reset: Changes of the input "reset" that count: none (no such input), rising, falling, both.
         unit_in: Unit of u.
         unit_out: Unit of y.
     """
@@ -103,9 +113,9 @@ class Integrator(Block):
         x = context.memory["x"]
         if self.reset == "none":
             return x
-        before, now = context.memory["before"], context.inputs["reset"]
-        rises, falls = _rises(before, now), _rises(-before, -now)
-        hit = {"rising": rises, "falling": falls, "both": rises.apply("max", falls)}[self.reset]
+        was, now = (1.0 - (-signal).apply("step") for signal in (context.memory["before"], context.inputs["reset"]))
+        rises, falls = now * (1.0 - was), was * (1.0 - now)
+        hit = {"rising": rises, "falling": falls, "both": rises + falls}[self.reset]
         return x * (1.0 - hit) + hit * np.asarray(self.start, dtype=np.float64)
 
     def compute(self, context: EvaluationContext) -> Values:
@@ -145,7 +155,7 @@ class Integrator(Block):
             left = Crossing(stays * held + held - 1.0, "falling")
             found[name] = left if leaves else Crossing(beyond, "rising")
         if self.reset != "none":
-            found["reset"] = Crossing(context.inputs["reset"], self.reset)  # type: ignore[arg-type]
+            found["reset"] = Crossing(context.inputs["reset"] - LEAST_ABOVE_ZERO, self.reset)  # type: ignore[arg-type]
         return found
 
     def crossed(self, context: EvaluationContext, which: str) -> Values:
@@ -184,11 +194,6 @@ class Integrator(Block):
             for entry in np.ndindex(context.states["x"].shape)
             for leaves in (False, True)
         }
-
-
-def _rises(before: Tensor, now: Tensor) -> Tensor:
-    """1 where a signal was below zero and is not now."""
-    return (1.0 - before.apply("step")) * now.apply("step")
 
 
 @dataclass(frozen=True, kw_only=True)

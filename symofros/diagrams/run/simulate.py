@@ -23,7 +23,7 @@ from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.examination.controllers import Rerun, RerunSpan, blamed
 from symofros.diagrams.run.examination.deep_contacts import contact_notes
 from symofros.diagrams.run.examination.diagnosis import Ended, diagnose
-from symofros.diagrams.run.examination.examined import BY_RK4, Energies, Examined
+from symofros.diagrams.run.examination.examined import Energies, Examined
 from symofros.diagrams.run.examination.prescribed import judge_prescribed
 from symofros.diagrams.run.examination.remarks import remarks
 from symofros.diagrams.run.loop import RECORD, Loop, Task
@@ -160,19 +160,17 @@ def _examined(task: PlannedRun, ended: Ended, given: Given) -> Examined:
     settings = ended.settings[0] if ended.settings else None
     h = 0.0 if settings is None or settings.adaptive else min(settings.dt, ended.spacing)
 
-    def repeat(i: int, t_end: float, refinements: int) -> Sequence[Array] | None:
+    def repeat(first: int, t_end: float, refinements: int, method: str | None = None) -> Sequence[Array] | None:
         o = task.options
-        once = replace(o, realtime=False)
-        if refinements == BY_RK4:
-            once = replace(once, method="rk4", dt=h)
-        elif refinements and h:
+        once = replace(o, realtime=False, method=method or o.method)
+        if (refinements or method) and h:
             once = replace(once, dt=0.5**refinements * h)
         elif refinements:
             rtol, atol = tolerances(o.rtol, o.atol, refinements)
             # Steps that instants cut may err by far less than their tolerances, as finer ones would.
             longest = 0.5 * ended.spacing if refinements > 0 else math.inf
             once = replace(once, rtol=rtol, atol=atol, max_step=min(o.max_step, longest))
-        return _resumed(replace(task, options=once, t_end=t_end, threads=1), ended, given, i)
+        return _resumed(replace(task, options=once, t_end=t_end, threads=1), ended, given, first)
 
     def accelerations(rows: Numbers) -> Array:
         t, q, v, u = (array[rows] for array in states)

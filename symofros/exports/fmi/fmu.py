@@ -122,6 +122,7 @@ def _write_diagram(program: DiagramProgram, folder: Path, stepping: Stepping, ge
         float(schedule.base) if schedule.instants else stepping.dt,
         (main, *(file for file in program.files if file.endswith(".c"))),
         exchanged=False,
+        serialised=False,
     )
     listed = diagram_variables(shown)
     return _packed(unit, folder, version, token, {**sources, **_core("symofros_fmu_program.h")}, listed, program.notes)

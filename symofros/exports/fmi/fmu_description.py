@@ -36,7 +36,8 @@ class Unit:
         stepping: How it steps by itself.
         interval: Communication step that it proposes [s].
         sources: C files that are compiled, the one with the interface first.
-        exchanged: Whether Model Exchange is offered, with derivatives and serialised states.
+        exchanged: Whether Model Exchange is offered, with derivatives.
+        serialised: Whether states that it keeps can be serialised.
         judged: Whether steps of an importer's integrator are judged at their ends, as bending beams are.
     """
 
@@ -48,6 +49,7 @@ class Unit:
     interval: float
     sources: tuple[str, ...]
     exchanged: bool = True
+    serialised: bool = True
     judged: bool = False
 
 
@@ -88,17 +90,18 @@ def description_xml(unit: Unit, variables: Sequence[Variable], version: int, tok
 
 
 def _interfaces(root: Tree.Element, unit: Unit, version: int) -> None:
-    common, offered = {"modelIdentifier": unit.c_name}, str(unit.exchanged).lower()
+    common = {"modelIdentifier": unit.c_name}
+    offered, serialised = (str(offers).lower() for offers in (unit.exchanged, unit.serialised))
     if version == 2:
         both = {
             "canGetAndSetFMUstate": "true",
-            "canSerializeFMUstate": offered,
+            "canSerializeFMUstate": serialised,
             "providesDirectionalDerivative": offered,
         }
     else:
         both = {
             "canGetAndSetFMUState": "true",
-            "canSerializeFMUState": offered,
+            "canSerializeFMUState": serialised,
             "providesDirectionalDerivatives": offered,
         }
     stepping = {"canHandleVariableCommunicationStepSize": "true"}

@@ -16,6 +16,7 @@ from symofros.blocks import (
     Integrator,
     KalmanFilter,
     Notch,
+    Pulse,
     Ramp,
     Sequence,
     Sine,
@@ -152,6 +153,20 @@ def test_a_reset_is_located_in_time() -> None:
     assert found["x.y"][-1] == pytest.approx([0.5 + 0.5679, 0.5 + 2 * 0.5679], abs=1e-9)
 
 
+@pytest.mark.parametrize(("reset", "resets"), [("rising", [0.3]), ("falling", [0.7]), ("both", [0.3, 0.7])])
+@pytest.mark.parametrize("period", [None, 0.1])
+def test_a_logical_signal_resets(reset: str, resets: list[float], period: float | None) -> None:
+    """From 0 to 1 is rising, back is falling, of a source of time and of a sampled one."""
+    diagram = sf.Diagram("reset")
+    diagram.add(Pulse(name="when", time=0.3, width=0.4, every=1.0, period=period))
+    diagram.add(Constant(name="one", value=1.0))
+    diagram.add(Integrator(name="x", reset=reset), u="one.y", reset="when.y")
+    simulation = sf.Simulation(diagram)
+    for found in (simulation.run(1.0, dt=0.05), simulation.interpret(1.0, dt=0.05)):
+        assert [one.t for one in found.crossings] == pytest.approx(resets, abs=1e-9)
+        assert found["x.y"][-1] == pytest.approx(1.0 - resets[-1], abs=1e-9)
+
+
 @pytest.mark.parametrize(("start", "end"), [(0.5, 0.65), (0.8, 0.8)])
 def test_a_reset_leads_away_from_a_limit_or_to_it(start: float, end: float) -> None:
     diagram = sf.Diagram("reset")
@@ -171,6 +186,10 @@ def test_a_sampled_integrator_resets_at_samples(reset: str, expected: list[int])
         integrator = Integrator(name="x", start=start, reset=reset, period=STEP)
         found = run(integrator, {"u": np.full(5, 100.0), "reset": [-1, -1, 1, 1, -1]})["y"]
         assert found == pytest.approx(np.add(expected, start), abs=1e-12)
+        # A logical signal, 0 or 1, counts as one of -1 and 1 does; from below zero to it is no change to above zero.
+        for signal, of in (([0, 0, 1, 1, 0], expected), ([-1, 0, 0, 0, -1], [0, 1, 2, 3, 4])):
+            found = run(integrator, {"u": np.full(5, 100.0), "reset": signal})["y"]
+            assert found == pytest.approx(np.add(of, start), abs=1e-12)
     limited = run(Integrator(name="x", high=1.5, period=STEP), {"u": [100.0] * 3 + [-100.0] * 2})["y"]
     assert limited == pytest.approx([0, 1, 1.5, 1.5, 0.5])
 

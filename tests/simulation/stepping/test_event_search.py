@@ -64,3 +64,12 @@ def test_zeros_are_those_of_the_function_where_it_crosses_in_each_step(h: float)
         wanted += sorted(k + z.real for z in zeros if abs(z.imag) < 1e-12 and 0.0 < z.real < 1.0)
     found, _ = searched(functions, h)
     np.testing.assert_allclose(found, wanted, rtol=0, atol=1e-8)
+
+
+@pytest.mark.parametrize("sign", [1.0, -1.0])
+@pytest.mark.parametrize("least", [1e-20, 1e-100, 2.3e-308])
+@pytest.mark.parametrize("zero", [0.0, 0.1, 0.2319, 0.5])
+def test_a_zero_beside_an_end_that_is_next_to_nothing_is_located(zero: float, least: float, sign: float) -> None:
+    """A signal that is just below zero up to some instant, and passes zero from there on."""
+    found, evaluated = searched([lambda x: -sign * least if x <= zero else sign * (x - zero)], 0.01)
+    assert found == pytest.approx([zero], abs=1e-9) and evaluated < 500

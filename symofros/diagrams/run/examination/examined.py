@@ -9,6 +9,7 @@ import math
 from collections.abc import Callable
 from dataclasses import dataclass, field
 from functools import cached_property
+from typing import Protocol
 
 import numpy as np
 
@@ -39,11 +40,25 @@ _AT_JUMP = 1e-3
 # speed arises where that is shorter.
 _MOMENT = 1e-3
 
-# The records of a run that goes on from a record (its number) to a time, by steps that are refined so many times: they
-# are half as long each time, or have a hundredth of the tolerances; of less than none longer, or with wider tolerances;
-# as many as BY_RK4: as long, by that method. None where it does not get there.
-BY_RK4 = 99
-Repeat = Callable[[int, float, int], States | None]
+# Method that shows whether steps of order 1 decide rightly at samples.
+_DECIDING = "rk4"
+
+
+class Repeat(Protocol):
+    """Makes a part of a run once more."""
+
+    def __call__(self, first: int, t_end: float, refinements: int, method: str | None = None) -> States | None:
+        """The records from record `first` to `t_end`; None where it does not get there.
+
+        Args:
+            first: Number of the record from which it goes on.
+            t_end: Where it ends [s].
+            refinements: How often steps are refined: they are half as long each time, or have a hundredth of the
+                tolerances; below zero they are longer, or have wider tolerances.
+            method: Stepping method of fixed steps; None: that of the run.
+        """
+
+
 # Records (n, m) of a vector -> its size.
 Norm = Callable[[Array], float]
 
@@ -285,17 +300,18 @@ def whole_note(run: Examined) -> str:
 
 
 def _decisions_note(run: Examined) -> str:
-    """Note on a run of order 1 with samples that rk4 changes by the same steps: half of them may decide as wrongly."""
+    """Note on a run of order 1 with samples that rk4 changes by the same steps: half the step may decide as wrongly."""
     sampled = any(piece.block.period is not None for piece in run.energies.resolved.pieces.values())
     if not sampled or not run.h or run.method_order > 1 or run.steps > MOST_STEPS:
         return ""
-    states, exact = run.coarse(run.window, 1), run.fine(run.window, BY_RK4, 1)
+    states, exact = run.coarse(run.window, 1), run.repeat(0, run.window.t_end, 0, _DECIDING)
     share, name = run.change(states, exact, "whole") if states is not None and exact is not None else (0.0, "")
     if not share > run.tolerance:
         return ""
     return (
-        f"steps of {run.h:.4g} s do not determine the motion of '{name}', in which what samples decide follows from"
-        f" less than they err by: 'rk4' by the same steps changes it by {percent(share)}; method='rk4', or a smaller dt"
+        f"steps of {run.h:.4g} s do not determine the motion of '{name}': their error changes what is decided at a"
+        f" sample, and '{_DECIDING}' with the same steps changes it by {percent(share)};"
+        f" method='{_DECIDING}', or a smaller dt"
     )
 
 

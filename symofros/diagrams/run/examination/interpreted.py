@@ -20,7 +20,7 @@ from symofros.runtime.manifold import chart_rate, retract
 from symofros.runtime.model import Model
 from symofros.simulation.results.examination.paths import Numbers
 from symofros.simulation.results.examination.step_size import step_size_note
-from symofros.simulation.stepping.methods import Method
+from symofros.simulation.stepping.methods import METHODS, Method
 from symofros.simulation.stepping.resolution import Resolution, Spectrum, resolution
 
 # States whose modes are looked at, as far as their evaluations are below this share of the run's.
@@ -155,18 +155,19 @@ class _Revisited:
         for key, values in run.memory.items():
             blocks.memory[key][...] = values[i]
 
-    def _repeat(self, i: int, t_end: float, refinements: int) -> Sequence[Array] | None:
-        course, slack = self._course, 1e-9 * self._course.dt
-        later = [instant for instant in course.instants if self._run.t[i] + slack < instant[0] <= t_end + slack]
+    def _repeat(self, first: int, t_end: float, refinements: int, method: str | None = None) -> Sequence[Array] | None:
+        course, slack, start = self._course, 1e-9 * self._course.dt, float(self._run.t[first])
+        later = [instant for instant in course.instants if start + slack < instant[0] <= t_end + slack]
         again = replace(
             course,
-            instants=[(float(self._run.t[i]), frozenset(), True), *later],
+            instants=[(start, frozenset(), True), *later],
             t_end=t_end,
             dt=0.5**refinements * course.step if refinements else course.dt,
+            tableau=METHODS[method].tableau if method else course.tableau,
             begins=False,
         )
         # Of the records of a crossing, at one time, the last has what the crossing changed.
-        self._place(int(np.searchsorted(self._run.t, self._run.t[i], "right")) - 1)
+        self._place(int(np.searchsorted(self._run.t, start, "right")) - 1)
         watch = BeamWatch(self._run.resolved, self._blocks.par, np.inf)
         run = run_interpreted(self._blocks, self._called, again, watch)
         return (run.t, run.q, run.v) if run.outcome.ok else None

@@ -65,32 +65,35 @@ static int32_t sym_arrives_at_zero(int32_t direction, double before, double afte
 /* Share of a step before an exact zero at which an event that is zero as well rests at zero. */
 #define SYM_EVENT_REST 1e-12
 
+/* Steps of the Illinois method in a row by which one end alone moves: then the value there is next to nothing beside the
+ * other one, as that of a signal just below zero (1e-308) is, and such steps would hardly move it. */
+enum { SYM_EVENT_SAME_END = 6 };
+
 /* The x in (a, b] from which on an event that is monotonic there is at zero or past it, by the Illinois method (regula
- * falsi whose retained end is halved); where it rests at zero, by bisection. Returns 0 or a status. */
+ * falsi whose retained end is halved); by bisection where it rests at zero, and from where one end alone moves. Returns 0
+ * or a status. */
 static int32_t sym_locate_event(const sym_event_search *s, int32_t i, double a, double fa, double b, double fb, double *x) {
     const double before = fa;
     double past = fb;
-    int32_t k, side = 0, rests = 0;
+    int32_t k, moved, side = 0, same = 0, rests = 0;
     for (k = 0; k < 100 && b - a > 4e-16; ++k) {
         const int32_t looks_back = past == 0.0 && !rests;
         double c = looks_back ? b - SYM_EVENT_REST : (fa * b - fb * a) / (fa - fb), f;
         int32_t status;
         if (looks_back && c <= a) break;
-        if (!(c > a && c < b)) c = 0.5 * (a + b);
+        if (!(c > a && c < b) || (same >= SYM_EVENT_SAME_END && !looks_back)) c = 0.5 * (a + b);
         status = sym_event_at(s, i, c, &f);
         if (status != 0) return status;
         if (!(f == f)) return SYM_DIVERGED;
         if (looks_back && f != 0.0) break;
         rests = rests || looks_back;
-        if ((f < 0.0) == (before < 0.0) && f != 0.0) {
-            a = c, fa = f;
-            if (side == 1) fb *= 0.5;
-            side = 1;
-        } else {
-            b = c, fb = past = f;
-            if (side == -1) fa *= 0.5;
-            side = -1;
-        }
+        moved = (f < 0.0) == (before < 0.0) && f != 0.0 ? 1 : -1;
+        if (moved == 1) a = c, fa = f;
+        else b = c, fb = past = f;
+        if (side == 1 && moved == 1) fb *= 0.5;
+        if (side == -1 && moved == -1) fa *= 0.5;
+        if (same < SYM_EVENT_SAME_END) same = side == moved ? same + 1 : 1;
+        side = moved;
     }
     *x = b;
     return 0;

@@ -153,4 +153,4 @@ def test_wrong_decisions_at_samples_that_half_the_step_repeats_are_noted(method:
         runs.append(sf.Simulation(diagram).run(2.0, method=chosen, dt=period / steps, record=period))
     wrong, right = runs
     assert np.abs(wrong["plant.q"] - right["plant.q"]).max() > 0.2 and not right.outcome.notes
-    assert any("in which what samples decide follows from" in note for note in wrong.outcome.notes)
+    assert any("their error changes what is decided at a sample, and 'rk4'" in note for note in wrong.outcome.notes)
