@@ -23,7 +23,7 @@ HOLLOW: tuple[Surface, ...] = ("sphere", "cylinder")
 EXPONENTS = (1.0, 1.5, 2.0)
 # What points of contact move along, the surfaces that it meets (no surface meets both), and what stands in elsewhere.
 _MOVING: tuple[tuple[str, tuple[Surface, ...], str], ...] = (
-    ("rim", ("plane", "sphere"), "a plane or sphere and restitution; or points along the rim"),
+    ("rim", ("plane", "sphere", "cylinder"), "one of these from outside and restitution; or points along the rim"),
     ("segment", ("sphere", "cylinder", "capsule", "box"), "its two ends as points, as on a plane; or points along it"),
 )
 _NUMBERS = (
@@ -80,8 +80,9 @@ class Contact:
         bristle_damping: Damping of that displacement [N s/m].
         restitution: Of a rigid contact, Stronge's energetic coefficient, 0 to 1: the normal impulse gives back its
             square of the work that it took.
-        rim: Radius of a circle about the z axis of the first frame through each point, whose next point to a plane or
-            sphere takes the point's place: rims of a disc, a wheel or a cylinder that tumbles; of rigid contacts [m].
+        rim: Radius of a circle about the z axis of the first frame through each point, whose next point to a plane,
+            sphere or cylinder takes the point's place: rims of a disc, a wheel or a cylinder that tumbles, or a ring
+            around a rod; of rigid contacts [m].
         segment: Length of a line along the z axis of the first frame about each point, whose next point to a sphere,
             cylinder, capsule or box takes the point's place: with a radius a capsule; of rigid contacts [m].
     """

@@ -1,4 +1,4 @@
-"""Rims of discs and cylinders on planes: closed forms, own equations (docs/theory/constraints.md, section 15)."""
+"""Rims of discs on planes, spheres, cylinders: closed forms, own equations (docs/theory/constraints.md, section 15)."""
 
 from __future__ import annotations
 
@@ -9,6 +9,7 @@ from typing import Any
 import numpy as np
 import pytest
 from scipy.integrate import solve_ivp
+from scipy.special import ellipk
 
 import symofros as sf
 from tests.simulation.rigid_scenes import FINE, GROUND, MASS, RADIUS, G, disc_system
@@ -202,7 +203,10 @@ def test_a_rim_that_lies_on_its_plane_is_said() -> None:
     for run in (begins, falls):
         assert run.outcome.kind == "beyond theory" and "lies on its plane" in str(run.outcome)
     assert falls.t[-1] < 0.12 and axis(falls.q[-1])[1] == pytest.approx(-0.009, abs=1e-5)
-    for stated in ({"stiffness": 1e5}, {"restitution": 0.0, "surface": "cylinder", "surface_radius": 1.0}):
+    for stated in (
+        {"stiffness": 1e5},
+        {"restitution": 0.0, "surface": "cylinder", "surface_radius": 1.0, "inside": True},
+    ):
         with pytest.raises(sf.DescriptionError, match="a rim meets a plane"):
             sf.Contact("c", ("disc", None), GROUND, rim=0.1, **stated)  # type: ignore[arg-type]
 
@@ -210,33 +214,39 @@ def test_a_rim_that_lies_on_its_plane_is_said() -> None:
 BIG = 0.3
 
 
-def on_a_sphere(friction: float) -> sf.Model:
-    """A thin drum with a rim at either end, above a sphere that rests."""
-    across = MASS * (RADIUS**2 / 4 + 0.01**2 / 12)
+@cache
+def on_a(surface: str, friction: float, big: float = BIG, e: float = 0.0, half: float = 0.005) -> sf.Model:
+    """A thin drum with a rim at either end, or one rim, above a sphere, or a cylinder along y, that rests."""
+    across = MASS * (RADIUS**2 / 4 + half**2 / 3)
     drum = sf.RigidBody(
         "drum", sf.Joint("free", "free"), sf.Inertia(MASS, moments=(across, across, MASS * RADIUS**2 / 2))
     )
-    sizes: dict[str, Any] = {"rim": RADIUS, "points": ((0, 0, -0.005), (0, 0, 0.005)), "surface_radius": BIG}
-    laws: dict[str, Any] = {"restitution": 0.0, "friction": friction, "surface": "sphere"}
-    return sf.compile(
-        sf.System("drum", [drum], connections=[sf.Contact("rim", ("drum", None), GROUND, **sizes, **laws)])
-    )
+    sizes: dict[str, Any] = {"rim": RADIUS, "points": [(0, 0, z) for z in ((-half, half) if half else (0.0,))]}
+    laws: dict[str, Any] = {"restitution": e, "friction": friction, "surface": surface, "surface_radius": big}
+    lies = sf.Frame("log", rotation=sf.Rotation.axis_angle((1, 0, 0), -pi / 2))
+    base = sf.RigidBody("base", sf.Joint("base", "fixed"), frames=(lies,))
+    rims = sf.Contact("rim", ("drum", None), ("base", "log"), **sizes, **laws)
+    return sf.compile(sf.System("drum", [base, drum], connections=[rims]))
 
 
-def test_rims_are_as_far_from_a_sphere_as_mujocos_cylinder() -> None:
-    """Where the centre of the sphere is beside and beyond the cylinder: else its face is nearer. And rows are rates."""
+@pytest.mark.parametrize("surface", ["sphere", "cylinder"])
+def test_rims_are_as_far_as_mujocos_cylinder(surface: str) -> None:
+    """Where the surface is beside and beyond the drum: else its face is nearer. And rows are rates."""
     mujoco = pytest.importorskip("mujoco")
+    size = f'"{BIG}"' if surface == "sphere" else f'"{BIG} 50" euler="90 0 0"'
     engine = mujoco.MjModel.from_xml_string(
-        f"""<mujoco><worldbody><geom type="sphere" size="{BIG}"/><body><freejoint/>
+        f"""<mujoco><worldbody><geom type="{surface}" size={size}/><body><freejoint/>
         <geom type="cylinder" size="{RADIUS} 0.005"/></body></worldbody></mujoco>"""
     )
-    data, model, rng, compared, h = mujoco.MjData(engine), on_a_sphere(0.1), np.random.default_rng(2), 0, 1e-5
+    data, model, rng, compared, h = mujoco.MjData(engine), on_a(surface, 0.1), np.random.default_rng(2), 0, 1e-5
     touching = model.with_parameters(**{"rim.0.mode": 2})
     for _ in range(40):
         q, v = model.random_state(rng)
         p, R = model.frame_pose("drum", q)
         along, beside = abs(R[:, 2] @ p), np.linalg.norm(p - (R[:, 2] @ p) * R[:, 2])
-        if along < 0.005 or beside < RADIUS or np.linalg.norm(p) < BIG + RADIUS:
+        if surface == "sphere" and (along < 0.005 or beside < RADIUS or np.linalg.norm(p) < BIG + RADIUS):
+            continue
+        if surface == "cylinder" and np.hypot(p[0], p[2]) < BIG + RADIUS:
             continue
         data.qpos[:] = q[[0, 1, 2, 6, 3, 4, 5]]
         mujoco.mj_kinematics(engine, data)
@@ -251,9 +261,31 @@ def test_rims_are_as_far_from_a_sphere_as_mujocos_cylinder() -> None:
     assert compared >= 10
 
 
+@pytest.mark.parametrize("big", [0.03, BIG, 3.0])
+def test_rims_are_as_far_from_a_cylinder_as_their_nearest_point(big: float) -> None:
+    """Of 4000 points of the rim, and between those: beside the cylinder, around it, askew, along and across it."""
+    model, rng = on_a("cylinder", 0.1, big), np.random.default_rng(4)
+    angles = np.linspace(0, 2 * pi, 4000, endpoint=False)
+    circle = RADIUS * np.array([np.cos(angles), np.sin(angles), 0 * angles])
+    for k in range(60):
+        q, v = model.random_state(rng)
+        q[:3] *= rng.choice([0.0, 0.01, 0.1, 1.0])
+        if k % 3 == 0:  # Its axis is along that of the cylinder, or at a right angle to it, to a share.
+            turn = rng.choice([0.0, 1e-9, 1e-3]) + rng.choice([0.0, pi / 2])
+            q[3:7] = sin(pi / 4 + turn / 2), 0, 0, cos(pi / 4 + turn / 2)
+        p, R = model.frame_pose("drum", q)
+        x, _, z = (p + 0.005 * R[:, 2])[:, None] + R @ circle
+        square = x**2 + z**2
+        at = int(square.argmin())
+        left, middle, right = (square[(at + j) % angles.size] for j in (-1, 0, 1))
+        bend = left + right - 2 * middle
+        least = middle - (right - left) ** 2 / 8 / bend if bend > 1e-15 else middle
+        assert model.contact_forces(q, v).gap[1] == pytest.approx(sqrt(max(least, 0.0)) - big, abs=1e-8)
+
+
 def test_a_drum_rolls_off_a_sphere() -> None:
     """Upright, on both rims: 3/4 of the square of its speed is g times its fall."""
-    model, lean = on_a_sphere(5.0), 0.2
+    model, lean = on_a("sphere", 5.0), 0.2
     high = sqrt((BIG) ** 2 - 0.005**2) + RADIUS  # Rims are beside the middle of the sphere.
     q = model.neutral()
     q[[0, 2]], q[3], q[6] = high * np.array([sin(lean), cos(lean)]), sqrt(0.5), sqrt(0.5)
@@ -265,3 +297,70 @@ def test_a_drum_rolls_off_a_sphere() -> None:
         speeds = np.array([model.frame_velocity("drum", *x)[:3] for x in zip(run.q, run.v, strict=True)])
         np.testing.assert_allclose(0.75 * (speeds**2).sum(axis=1), G * (q[2] - run.q[:, 2]), atol=1e-8)
         assert np.arctan2(*places[-1]) > 0.4
+
+
+def test_a_drum_rolls_off_a_cylinder() -> None:
+    """Along the log's axis, on both rims, as off a sphere: 3/4 of the square of its speed is g times its fall."""
+    model, lean, high = on_a("cylinder", 5.0), 0.2, BIG + RADIUS
+    q = model.neutral()
+    q[[0, 2]], q[3], q[6] = high * np.array([sin(lean), cos(lean)]), sqrt(0.5), sqrt(0.5)
+    for given in (FINE, {"method": "rodas4", "rtol": 1e-10, "atol": 1e-12}):
+        run = sf.simulate(model, q, t_end=0.4, **given)
+        assert run.events == () and run.outcome.ok
+        places = run.q[:, [0, 2]]
+        np.testing.assert_allclose(np.linalg.norm(places, axis=1), high, atol=1e-9)
+        speeds = np.array([model.frame_velocity("drum", *x)[:3] for x in zip(run.q, run.v, strict=True)])
+        np.testing.assert_allclose(0.75 * (speeds**2).sum(axis=1), G * (q[2] - run.q[:, 2]), atol=1e-8)
+
+
+def test_a_tube_swings_on_a_rod_as_a_pendulum() -> None:
+    """Around the rod, without slip: of the length 3/2 (R - r), whose period is an elliptic integral."""
+    rod = 0.04
+    model, long, lean = on_a("cylinder", 5.0, rod), 1.5 * (RADIUS - rod), 1.0
+    q = model.neutral()
+    q[[0, 2]], q[3], q[6] = (RADIUS - rod) * np.array([sin(lean), -cos(lean)]), sqrt(0.5), sqrt(0.5)
+    period = 4 * sqrt(long / G) * ellipk(sin(lean / 2) ** 2)
+    for given in (FINE, {"method": "rodas4", "rtol": 1e-10, "atol": 1e-12}):
+        run = sf.simulate(model, q, t_end=period, **given)
+        assert run.events == () and run.outcome.ok
+        assert np.arctan2(run.q[:, 0], -run.q[:, 2]).min() == pytest.approx(-lean, abs=1e-3)
+        assert run.q[-1, :3] == pytest.approx(q[:3], abs=1e-8)
+
+
+def test_a_ring_that_strikes_a_log_keeps_its_energy() -> None:
+    """Without friction and loss, askew, bounces and all: energy, and momentum along the log."""
+    model = on_a("cylinder", 0.0, e=1.0)
+    q = model.neutral()
+    q[:3], q[3:7] = (0.1, 0.0, 0.6), (0.3, 0.5, 0.2, 0.8)
+    q = model.normalized(q)
+    run = sf.simulate(model, q, [0.1, 0.3, -0.2, 3.0, -4.0, 5.0], t_end=0.5, **FINE)
+    assert run.outcome.ok and len(run.events) >= 2
+    energy = run.kinetic_energy + run.potential_energy
+    assert np.ptp(energy) < 1e-8
+    along = [model.frame_velocity("drum", *x)[1] for x in zip(run.q, run.v, strict=True)]
+    assert np.ptp(along) < 1e-10
+
+
+@pytest.mark.parametrize("given", [FINE, {"method": "rk4", "dt": 1e-3}, {"method": "rodas4", "dt": 1e-3}])
+def test_a_ring_that_touches_a_rod_at_two_points_ends_in_words(given: dict[str, Any]) -> None:
+    """It tilts around the rod until its ellipse is as narrow: there the nearest point jumps."""
+    model = on_a("cylinder", 0.0, 0.06, half=0.0)
+    q = model.neutral()
+    q[2], q[3], q[6] = -(RADIUS - 0.06), sqrt(0.5), sqrt(0.5)
+    run = sf.simulate(model, q, [0, 0, 0, 0, 6.0, 0], t_end=2.0, **given)
+    assert run.outcome.kind == "beyond theory" and "two points" in run.outcome.reason
+
+
+@pytest.mark.parametrize("inside", [False, True])
+def test_implicit_steps_of_a_rim_on_a_cylinder_are_of_order_four(inside: bool) -> None:
+    """By the derivatives of the nearest point: half the step is off by less than an eighth."""
+    model = on_a("cylinder", 0.0, 0.06 if inside else BIG, half=0.0)
+    q = model.neutral()
+    q[2], q[3], q[6] = -(RADIUS - 0.06) if inside else BIG + RADIUS, sqrt(0.5), sqrt(0.5)
+    v = [0, 0, 0, 2.0, 1.0, 0] if inside else [0.1, 0, 0, 0.1, 0.1, 3.0]
+    known = sf.simulate(model, q, v, t_end=0.3, **FINE)
+    far = []
+    for dt in (4e-3, 2e-3):
+        run = sf.simulate(model, q, v, t_end=0.3, method="rodas4", adaptive=False, dt=dt)
+        far.append(np.abs(run.q[-1] - known.q[-1]).max())
+    assert far[1] < far[0] / 8 and far[1] < 1e-5

@@ -29,7 +29,7 @@ from symofros.mechanics.topology.sticking import sticking_coordinates
 _REST = 1e-14
 # Quantities of a ball in formulas, "contact.foot.gap": its distance from the surface, the velocity of its material
 # point against the surface's along the axes of contact, the z component of the normal in the axes of the surface, and
-# the sine of the angle of a rim or segment with what it would touch along a line.
+# the sine of the angle of a rim or segment with what it would touch along a line, or near zero where two points touch.
 QUANTITIES = ("gap", "vx", "vy", "vz", "nz", "sine")
 # Least cosine between normal and pole, less than which the pole is taken anew: 120 degrees.
 _POLE_LEAST = -0.5

@@ -34,7 +34,7 @@ typedef enum sym_status {
     SYM_WRONG_CONTACT = -16,     /* a contact that rests is penetrated, or holds by a force that draws */
     SYM_NO_CONTACT_FORCE = -17,  /* no forces of rigid contacts with friction were found that agree with their motion */
     SYM_CONTACTS_AMBIGUOUS = -18, /* several motions agree with Coulomb's law at rigid contacts */
-    SYM_FLAT_RIM = -19           /* a rim lies on its plane, or a segment along its surface: no single point touches */
+    SYM_FLAT_RIM = -19           /* a rim lies on its plane, a segment along its surface, or a rim touches a cylinder at two points: no single one */
 } sym_status;
 
 typedef enum sym_method {

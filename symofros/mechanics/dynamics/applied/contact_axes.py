@@ -7,6 +7,7 @@ from typing import NamedTuple
 from symofros.description.contacts import Contact
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
+from symofros.expr.ops import STOP_GRADIENT
 from symofros.expr.vector import Mat3, Vec3
 from symofros.mechanics.kinematics.lowering import Lowering
 from symofros.mechanics.topology.rigid_contacts import RigidBall
@@ -14,6 +15,10 @@ from symofros.mechanics.topology.rigid_contacts import RigidBall
 # What is divided by is at least this, a number of single precision too: the squares of two centres' distance, and of
 # a normal's distance from the point opposite to its pole.
 TINY = 1e-30
+# Newton's steps for the multiplier of a rim on a cylinder: from the start of (38k) they leave 1e-14 at most.
+_SECULAR_STEPS = 5
+# A rim that is as near to a cylinder at two points takes the one towards this direction, which no scene has.
+_ASKEW, _SHIFT = (0.48, 0.36, 0.8), 1e-9
 
 
 class ContactAxes(NamedTuple):
@@ -114,6 +119,8 @@ def reach_of(lowering: Lowering, contact: Contact, on_ball: Line, S: Triad) -> R
         on_ball: The line through the point along the z axis of its frame.
         S: The surface's frame.
     """
+    if contact.rim is not None and contact.surface == "cylinder":
+        return rim_on_cylinder(lowering.g, lowering.value(contact.rim), on_ball, S.axis)
     if contact.rim is not None:
         n, n_rate = (S.axis.a, S.axis.a_rate) if contact.surface == "plane" else _from_centre(on_ball, S)
         return rim_reach(lowering.g, lowering.value(contact.rim), on_ball.a, on_ball.a_rate, n, n_rate)
@@ -130,8 +137,8 @@ class Reach(NamedTuple):
     Attributes:
         reach: The vector [m].
         rate: Its rate [m/s].
-        sine: Of the angle between the planes of rim and contact, or of that between a segment and the surface's axis:
-            near zero they touch along a line.
+        sine: Of the angle between the planes of rim and contact, or of that between a segment and the surface's axis;
+            of a rim on a cylinder sigma/lambda of (38j): near zero no single point is next to the surface.
     """
 
     reach: Vec3
@@ -165,6 +172,72 @@ def rim_reach(g: Graph, radius: Edge, a: Vec3, a_rate: Vec3, n: Vec3, n_rate: Ve
     e = s.scaled(g.div(ONE, sine))
     e_rate = (s_rate - e.scaled(s_rate.dot(e))).scaled(g.div(ONE, sine))
     return Reach(-e.scaled(radius), -e_rate.scaled(radius), sine)
+
+
+def rim_on_cylinder(g: Graph, radius: Edge, A: Line, B: Line) -> Reach:
+    """Where a rim about the line A is next to the line B, of all points of the rim, and how that moves: (38j), (38l).
+
+    Args:
+        g: Graph of the result.
+        radius: Radius of the rim [m].
+        A: The rim's axis, through its centre.
+        B: The cylinder's axis.
+    """
+    (a, a_rate), (b, b_rate) = A[2:], B[2:]
+    c, c_rate, x = A.p - B.p, A.v - B.v, a.dot(b)
+    d, m = c - b.scaled(b.dot(c)), b - a.scaled(x)
+
+    def derived(e: Vec3) -> tuple[Vec3, Vec3, Edge]:
+        """The tangent of the rim, the vector from the axis B, and the second derivative of (38j)."""
+        t = a.cross(e)
+        y = d + (e - b.scaled(b.dot(e))).scaled(radius)
+        bent = g.sub(g.mul(radius, g.sub(ONE, g.mul(b.dot(t), b.dot(t)))), y.dot(e))
+        return t, y, g.call("max", bent, g.mul(g.constant(_SHIFT), radius))
+
+    e = _nearest_direction(g, radius, a, m, d)
+    for _ in range(2):  # Newton's steps, which make derivatives of e exact up to the second, as does e . a = 0.
+        e = _unit(g, e - a.scaled(a.dot(e)))
+        t, y, bent = derived(e)
+        e = _unit(g, e - t.scaled(g.div(y.dot(t), bent)))
+    t, y, bent = derived(e)
+    q, tilt = c + e.scaled(radius), g.mul(radius, e.dot(a_rate))
+    along = g.sub(g.add(b_rate.dot(q), b.dot(c_rate)), g.mul(tilt, x))
+    parts = g.mul(along, b.dot(t)), g.mul(b.dot(q), b_rate.dot(t)), g.mul(t.dot(a_rate), y.dot(a))
+    turn = g.div(g.sub(g.sum(parts), c_rate.dot(t)), bent)
+    e_rate = t.scaled(turn) - a.scaled(e.dot(a_rate))
+    multiplier = g.call("max", g.sub(radius, y.dot(e)), g.constant(TINY))
+    left = g.call("max", g.sub(multiplier, g.mul(radius, m.dot(m))), ZERO)
+    return Reach(e.scaled(radius), e_rate.scaled(radius), g.div(left, multiplier))
+
+
+def _nearest_direction(g: Graph, radius: Edge, a: Vec3, m: Vec3, d: Vec3) -> Vec3:
+    """The unit vector e normal to a with the least d . e - radius (m . e)^2/2, without derivatives: (38j), (38k)."""
+
+    def still(*edges: Edge) -> list[Edge]:
+        return [g.call(STOP_GRADIENT, edge) for edge in edges]
+
+    a, m, d, (radius,) = Vec3(g, *still(*a)), Vec3(g, *still(*m)), Vec3(g, *still(*d)), still(radius)
+    tiny, two = g.constant(TINY), g.constant(2.0)
+    d = d + Vec3(g, *(g.mul(radius, g.constant(_SHIFT * share)) for share in _ASKEW))
+    d = d - a.scaled(a.dot(d))
+    k, slant = g.mul(radius, m.dot(m)), m.dot(d)
+    alpha2 = g.div(g.mul(slant, slant), g.call("max", m.dot(m), tiny))
+    beta2 = g.call("max", g.sub(d.dot(d), alpha2), ZERO)
+    alpha, beta = g.sqrt(alpha2), g.sqrt(beta2)
+    room = g.call("max", g.mul(two, g.sub(g.mul(k, k), beta2)), tiny)
+    cube = g.div(g.mul(alpha2, g.mul(k, g.mul(k, k))), g.call("max", g.mul(g.constant(4.0), beta2), tiny))
+    least = g.call("min", g.div(g.mul(alpha, k), g.sqrt(room)), g.call("pow", cube, g.constant(1.0 / 3.0)))
+    sigma = g.call("max", g.call("max", alpha, g.sub(beta, k)), g.call("max", least, tiny))
+    for _ in range(_SECULAR_STEPS):
+        multiplier = g.add(sigma, k)
+        x2, y2 = g.div(alpha2, g.mul(sigma, sigma)), g.div(beta2, g.mul(multiplier, multiplier))
+        square, slope = g.add(x2, y2), g.add(g.div(x2, sigma), g.div(y2, multiplier))
+        sigma = g.add(sigma, g.div(g.mul(g.sub(g.sqrt(square), ONE), square), g.call("max", slope, tiny)))
+    return _unit(g, -(d + m.scaled(g.div(g.mul(radius, slant), sigma))))
+
+
+def _unit(g: Graph, x: Vec3) -> Vec3:
+    return x.scaled(g.div(ONE, norm(g, x)))
 
 
 def segment_reach(lowering: Lowering, contact: Contact, A: Line, B: Line) -> Reach:

@@ -92,6 +92,8 @@ SURFACES: dict[str, dict[str, Any]] = {
     "plane": {},
     "rim": {"rim": 0.3},
     "sphere": {"surface": "sphere", "surface_radius": 0.3},
+    "rim on a cylinder": {"surface": "cylinder", "surface_radius": 0.2, "rim": 0.3},
+    "ring around a cylinder": {"surface": "cylinder", "surface_radius": 0.2, "rim": 9.0},
     "hollow sphere": {"surface": "sphere", "surface_radius": 0.9, "inside": True},
     "cylinder": {"surface": "cylinder", "surface_radius": 0.2},
     **{
@@ -114,7 +116,7 @@ SURFACES: dict[str, dict[str, Any]] = {
     ("surface", "pole"), [("plane", None), ("rim", None), *((x, s) for x in list(SURFACES)[2:] for s in (1, -1))]
 )
 def test_rows_of_rigid_contacts_are_derivatives_along_the_motion(surface: str, pole: float | None) -> None:
-    """A ball that sticks: its distance twice, and the rates of the velocities along axes that turn (38a) to (38h)."""
+    """A ball that sticks: its distance twice, and the rates of the velocities along axes that turn (38a) to (38l)."""
     contact = sf.Contact("k", A, B, restitution=0.0, radius=0.1, points=[(0.05, 0.1, -0.1)], **SURFACES[surface])
     m = sf.compile(
         tree(connections=(contact,)),
