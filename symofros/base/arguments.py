@@ -164,8 +164,13 @@ def entries_of(value: Any) -> list[Any] | None:
 
 def _misfit(name: str, signature: inspect.Signature, fault: str, given: Mapping[str, object]) -> ArgumentError:
     """A call with arguments that are missing, unknown, or too many."""
-    known = list(signature.parameters)
-    unknown = [argument for argument in given if argument not in known]
+    named = [
+        p for p in signature.parameters.values() if p.name != "self" and p.kind not in (p.VAR_KEYWORD, p.VAR_POSITIONAL)
+    ]
+    known = [parameter.name for parameter in named]
+    open_ended = any(p.kind == p.VAR_KEYWORD for p in signature.parameters.values())
+    unknown = [argument for argument in given if argument not in known and not open_ended]
     remedy = did_you_mean(unknown[0], known) if unknown else "give what it takes, by name"
     fault = f"got an unexpected keyword argument '{unknown[0]}'" if unknown else fault
-    return ArgumentError(Problem(f"{name}: the arguments do not fit", fault, f"it takes {', '.join(known)}", remedy))
+    takes = f"it takes {', '.join(known)}{', and options by name' * open_ended}"
+    return ArgumentError(Problem(f"{name}: the arguments do not fit", fault, takes, remedy))

@@ -24,10 +24,20 @@ _CHECKED_BY_CLASS = frozenset(
 _ANCHOR = tuple[str, str | None]
 _ATTRIBUTE = re.compile(r"^    (\w+): (.*(?:\n {8}.*)*)", re.MULTILINE)
 # What is stated elsewhere, or by other programs under other names.
+_CONSTRAINTS, _LIMITS = "constraints=(...) has all of them", "limits=sf.Limits(lower, upper)"
 _ABSENT: Mapping[str, str] = {
     "GA": "state GA_y and GA_z, with the correction of shear, of a rod with shear_y and shear_z; else leave it out",
     "kGA": "state it as GA_y and GA_z, of a rod with shear_y and shear_z; else leave it out",
+    "closures": _CONSTRAINTS,
+    "contacts": "connections=(...) has contacts, too",
+    "couplings": _CONSTRAINTS,
+    "damping": "an element has it: elements=(sf.Damper(...),)",
+    "friction": "an element has it: elements=(sf.Friction(...),)",
+    "lower": _LIMITS,
     "mass": "an Inertia has it: inertia=sf.Inertia(mass=...)",
+    "nonholonomic": _CONSTRAINTS,
+    "stiffness": "an element has it: elements=(sf.Spring(...),)",
+    "upper": _LIMITS,
 }
 
 

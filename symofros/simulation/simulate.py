@@ -142,7 +142,7 @@ def run_to_its_end(
 def _held_as_a_whole(
     run: Trajectory, stepper: Stepper, phases: Sequence[_Phase], settings: Settings, start: tuple[Array, Array, Array]
 ) -> Trajectory:
-    """A run with the note on what its events make of the errors of its parts, where nothing is said of steps.
+    """A run with the note on what its events or contacts make of errors, where nothing is said of steps.
 
     Args:
         run: The run.
@@ -152,7 +152,8 @@ def _held_as_a_whole(
         start: Initial q, v, and the run-time parameters (npar).
     """
     acted, outcome = sum(phase.acted for phase in phases), run.outcome
-    if stepper.actions is None or outcome.kind not in ("finished", "event", "singular", "not converged"):
+    switches = stepper.actions is not None or stepper.model.record.has_compliant_contacts
+    if not switches or outcome.kind not in ("finished", "event", "singular", "not converged"):
         return run
     left_out = int(acted > 0 and not phases[-1].statistics.steps)  # What the actions of a terminal event leave.
     states = [x[: len(x) - left_out] for x in (run.t, run.q, run.v, run.u)]

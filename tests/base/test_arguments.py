@@ -40,3 +40,12 @@ def test_what_is_stated_stays(case: str) -> None:
     before = repr(getattr(made, name))
     spoil(arguments[name])
     assert repr(getattr(made, name)) == before and repr(arguments[name]) != before
+
+
+def test_a_call_with_options_by_name_is_not_refused_for_them() -> None:
+    """What is wrong is the second argument, not `dt`, and nobody gives `self`."""
+    for wrong in (lambda: sf.Stepper(None, [0.1], dt=0.1), lambda: sf.Stepper(dt=0.1)):  # type: ignore[call-arg, misc]
+        with pytest.raises(sf.ArgumentError) as raised:
+            wrong()
+        assert "'dt'" not in str(raised.value) and "self" not in str(raised.value)
+        assert "it takes model, u, par, events, options, and options by name" in str(raised.value)

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from dataclasses import fields
 from functools import partial
 from typing import Any
@@ -60,3 +61,19 @@ def test_loads_along_sections_are_taken_by_theories_of_any_bending_alone(theory:
         return
     with pytest.raises(sf.DescriptionError, match=r"along the axes of the sections[\s\S]*state theory: strain"):
         sf.Beam("rod", sf.Joint("q", "revolute"), 1.0, 1.0, **given)
+
+
+@pytest.mark.parametrize(
+    ("make", "said"),
+    [
+        (lambda: sf.System("s", (), contacts=()), "connections=(...) has contacts"),  # type: ignore[call-arg]
+        (lambda: sf.System("s", (), closures=()), "constraints=(...) has all"),  # type: ignore[call-arg]
+        (lambda: sf.Joint("q", "revolute", friction=1.0), "elements=(sf.Friction"),  # type: ignore[call-arg]
+        (lambda: sf.Joint("q", "revolute", damping=1.0), "elements=(sf.Damper"),  # type: ignore[call-arg]
+        (lambda: sf.Joint("q", "revolute", upper=1.0), "limits=sf.Limits"),  # type: ignore[call-arg]
+    ],
+)
+def test_what_files_and_other_programs_state_there_leads_to_its_place(make: Any, said: str) -> None:
+    """The nearest entry was 'constraints' of contacts, 'rotation' of friction."""
+    with pytest.raises(sf.DescriptionError, match=re.escape(said)):
+        make()

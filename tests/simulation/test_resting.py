@@ -77,6 +77,19 @@ def test_methods_of_order_one_come_to_rest_on_the_floor(method: str, e: float) -
     assert without.q.min() > -1e-12
 
 
+@pytest.mark.parametrize("e", [0.3, 0.6, 0.8])
+def test_bounces_by_explicit_euler_end_where_the_method_adds_what_strikes_take(e: float) -> None:
+    """They went on for ever, at a height of h^2 g; flights of less than (32d) are the last, and the note says so."""
+    h = 1e-2 * (1.0 - e)
+    run = sf.simulate(ball(), [0.1], t_end=2.0, events=floor(e), method="euler", dt=h)
+    assert run.q.min() > -1e-12 and run.q[-1, 0] == pytest.approx(0.0, abs=1e-12) and not run.v[-1].any()
+    (note,) = (note for note in run.outcome.notes if "persists" in note)
+    assert note.endswith(f"would follow within {2.0 * h / (1.0 - e):.3g} s")
+    flights = np.diff([found.t for found in run.events])
+    assert flights[-1] <= 2.0 * h / (1.0 - e) < flights[-2]
+    assert run.events[-1].t == pytest.approx(np.sqrt(0.2 / G) * (1.0 + e) / (1.0 - e), rel=0.1)
+
+
 def test_a_plastic_strike_rests_at_once_and_residuals_of_complementarity_are_rounding() -> None:
     """Gap and force are never below zero, and one of them is zero, over openings and strikes."""
     pull = {"z": "12*sin(2*t)"}

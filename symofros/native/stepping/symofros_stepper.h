@@ -359,8 +359,8 @@ int32_t sym_run_engage(sym_run *run, double *gap);
 /* At the events at which the run has been cut: do their actions, one after the other. Returns 0, SYM_TERMINAL_EVENT where one
  * of them ends the run, or a status below 0, the state then being that before the action that failed. */
 int32_t sym_run_act(sym_run *run);
-/* Time that counts at t as one instant where actions bring about each other [s]. */
-double sym_run_one_instant(const sym_run *run, double t);
+/* Time within which strikes of coefficient e follow each other at t where they accumulate [s]. */
+double sym_run_accumulation(const sym_run *run, double t, double e);
 /* Parameters (npar) from now on, of a run with actions. */
 void sym_run_set_parameters(sym_run *run, const double *par);
 /* Doubles of a row of run->event_done, and where one's numbers are. */

@@ -12,6 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import Array
+from symofros.base.measures import TRANSLATION
 from symofros.runtime.constrained import HALVINGS, LARGEST_STEP, null_space, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.mass_matrix import mass_matrix
@@ -28,6 +29,8 @@ _NEUTRAL = 1e-9
 _NO_POTENTIAL = 1e-6
 # Mass that the relaxation adds to every motion, of their mean: bodies without mass have none.
 _ADDED_MASS = 1e-9
+# Difference of the residual's fall from a linear one, over it, up to which the next step may shift twice as far.
+_LINEAR = 0.1
 # By how much the damping of the relaxation may change from step to step.
 _SLOWEST, _FASTEST = 4.0, 0.1
 
@@ -214,6 +217,7 @@ def _newton(balance: Balance, start: Search, tolerance: float, most: int) -> Sea
     model, rows, unknowns, n = balance.model, balance.rows, balance.unknowns, balance.n
     nv, nc, reach = model.nv, model.nc, balance.reach.speeds
     q, v, lam, R, sizes, count = start.q, start.v, start.lam, start.R, start.sizes, start.count
+    wider = 1.0
     while balance.size(R, sizes) > tolerance and count < most:
         G = balance.jacobian(q)
         K = np.zeros((nv + nc, nv + nc))
@@ -236,13 +240,17 @@ def _newton(balance: Balance, start: Search, tolerance: float, most: int) -> Sea
             R[rows] / of_conditions,
             slice(len(balance.free), len(balance.free) + nv - n),
         )
-        step[:nv] *= _bounded(step[:n], balance)
+        share, before = _bounded(step[:n], balance, wider), np.linalg.norm(R[rows] / of_conditions)
+        step[:nv] *= share
         for _ in range(HALVINGS):
             (tried, v_tried), lam_tried = balance.moved(q, v, step[:nv]), lam + step[nv:]
             R_tried, sizes_tried = balance.residual(tried, v_tried, lam_tried)
-            if np.linalg.norm(R_tried[rows] / of_conditions) < np.linalg.norm(R[rows] / of_conditions) or count == 0:
+            left = np.linalg.norm(R_tried[rows] / of_conditions)
+            if left < before or count == 0:
                 break
-            step *= 0.5
+            step, share = 0.5 * step, 0.5 * share
+        # Shifts of a mechanism have no size of their own that a first step could know.
+        wider *= 2.0 if abs(left - (1.0 - share) * before) <= _LINEAR * share * before else 1.0
         # Forces may vanish one and all at rest: the largest on the way there is what small is measured by.
         sizes, count = np.fmax(sizes, sizes_tried), count + 1
         q, v, lam, R = tried, v_tried, lam_tried, R_tried
@@ -369,7 +377,8 @@ def _downhill(K: Array) -> tuple[Array, bool]:
     return np.asarray(K + (directions * turned) @ directions.T), stable
 
 
-def _bounded(step: Array, balance: Balance) -> float:
-    """The factor of a step (n) that makes it no longer than LARGEST_STEP of the reach."""
-    extent = np.abs(step / balance.reach.steps[: len(step)])
+def _bounded(step: Array, balance: Balance, wider: float = 1.0) -> float:
+    """The factor of a step (n) that makes it no longer than LARGEST_STEP of the reach, shifts so many times wider."""
+    shifts = np.equal(balance.model.record.measures.kinds(balance.model.nv)[: len(step)], TRANSLATION)
+    extent = np.abs(step / balance.reach.steps[: len(step)]) / np.where(shifts, wider, 1.0)
     return min(1.0, LARGEST_STEP / max(float(extent.max(initial=0.0)), 1e-300))

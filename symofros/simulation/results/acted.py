@@ -58,7 +58,9 @@ def notes_of(run: Stepper, met: Met) -> tuple[str, ...]:
         )
     if not met.done.rests:
         return notes
-    within = f", where strikes would follow within {run.accumulation(met.t):.3g} s" if event.restitution else ""
+    within, e = "", event.restitution
+    if e:
+        within = f", where strikes would follow within {run.accumulation(met.t, e):.3g} s"
     return (*notes, f"event '{event.name}': the contact persists from t = {met.t:.12g} s on{within}")
 
 

@@ -13,7 +13,6 @@ import numpy as np
 from symofros.base.arrays import Array, Mask
 from symofros.base.measures import ROTATION
 from symofros.base.names import TIME
-from symofros.native import native_number
 from symofros.runtime.beams import BeamBending, worst_bendings
 from symofros.runtime.calls import constants
 from symofros.simulation.stepping.bound_run import BoundRun
@@ -22,8 +21,6 @@ from symofros.simulation.stepping.status import Status
 
 # Events recorded between two calls that take them.
 _EVENT_ROWS = 64
-# Times what counts as an instant, strikes follow each other where they accumulate.
-_ACCUMULATION = native_number("stepping/contacts/sticking.c", "SYM_ACCUMULATION")
 # Ends of steps kept for the diagnosis of a run.
 _DIAGNOSTIC_ROWS = 512
 _TIMED = re.compile(rf"\b{TIME}\b")
@@ -95,9 +92,9 @@ class Stepper(BoundRun):
         if self.actions is not None:
             self.run.actions.at_once = instant
 
-    def accumulation(self, t: float) -> float:
-        """Time within which strikes of a contact that comes to rest at t are its last ones [s]."""
-        return _ACCUMULATION * float(self.native.sym_run_one_instant(self.run, t))
+    def accumulation(self, t: float, e: float) -> float:
+        """Time within which strikes of coefficient e of a contact that comes to rest at t are its last ones [s]."""
+        return float(self.native.sym_run_accumulation(self.run, t, e))
 
     def ignore_event(self, which: int) -> None:
         """An event is not looked for any more."""

@@ -194,3 +194,13 @@ def test_a_top_that_spins_is_not_judged_by_stiffness_alone() -> None:
     made = interpreted(sf.System("upright", (shaft, bob)))
     assert rate_of(sf.equilibrium(made, [0.0, 0.1]), "q") == pytest.approx(math.sqrt(9.81), rel=5e-3)
     assert sf.equilibrium(made, [0.0, 0.0], [1.0, 0.0], held=["turn"]).notes == ()
+
+
+@pytest.mark.parametrize("size", [1e-6, 1.0, 1e3, 1e9])
+def test_masses_on_soft_springs_come_to_rest_however_far_below(size: float) -> None:
+    """Steps of at most half a metre ended 50 m below the guess; forces that are linear in shifts widen them."""
+    spring = sf.Spring(9.81 / size)
+    above = sf.RigidBody("above", sf.Joint("z1", "prismatic", axis=(0, 0, 1), elements=(spring,)), sf.Inertia(1.0))
+    joint = sf.Joint("z2", "prismatic", "above", axis=(0, 0, 1), elements=(spring,))
+    model = sf.compile(sf.System("chain", (above, sf.RigidBody("below", joint, sf.Inertia(1.0)))))
+    assert sf.equilibrium(model, [0.0, 0.0]).q == pytest.approx([-2.0 * size, -size], rel=1e-9)

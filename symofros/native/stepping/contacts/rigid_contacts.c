@@ -228,7 +228,8 @@ static int32_t sym_decide_contacts(sym_run *r, sym_touching *at, const double *w
     for (i = 0; i < p->n && status == 0; ++i) {
         const double since = r->t - sym_ball_memory(s, at->of[i])[3];
         const int32_t opened = was[s->contacts[at->of[i]].mode] == SYM_OPEN, approaches = at->u[3 * i + 2] < -still;
-        e[i] = opened && since > SYM_ACCUMULATION * sym_run_one_instant(r, r->t) ? s->contact_state.out[0][SYM_CONTACT_ENTRIES * at->of[i] + 5] : 0.0;
+        e[i] = s->contact_state.out[0][SYM_CONTACT_ENTRIES * at->of[i] + 5];
+        if (!opened || since <= sym_run_accumulation(r, r->t, e[i])) e[i] = 0.0;
         p->last[i] = was[s->contacts[at->of[i]].mode];
         if (!opened || approaches) at->apart[i] = 0.0;
         at->struck[i] = opened && approaches;

@@ -50,10 +50,18 @@ enum { SYM_ALL_AT_ONCE = 3, SYM_MOST_ROUNDS = 1000 };
 #define SYM_TIME_ROUNDING 1e-13
 #define SYM_NO_TIME 1e-200 /* so that it is above zero at t = 0 */
 
-SYM_EXPORT double sym_run_one_instant(const sym_run *r, double t) {
+static double sym_run_one_instant(const sym_run *r, double t) {
     const double rounding = SYM_TIME_ROUNDING * fmax(fabs(t), SYM_NO_TIME);
     if (r->actions->at_once > 0.0) return r->actions->at_once;
     return fmax(SYM_SHARE_OF_MOTION * (t - r->acted_at[r->system->n_events]), rounding);
+}
+
+/* Time within which a strike follows the one before where they accumulate; e: its coefficient, (32c). Explicit Euler adds more
+ * to shorter flights than the strike takes. */
+SYM_EXPORT double sym_run_accumulation(const sym_run *r, double t, double e) {
+    const double instant = SYM_ACCUMULATION * sym_run_one_instant(r, t);
+    const int32_t adds = r->method == SYM_METHOD_EXPLICIT && r->tableau.stages == 1 && e < 1.0;
+    return adds ? fmax(instant, 2.0 * r->h / (1.0 - e)) : instant;
 }
 
 /* Note when a motion begins, parts of which may be runs of their own. */

@@ -156,7 +156,7 @@ static int32_t sym_act(sym_run *r, int32_t event, const sym_done *done) {
     const size_t par_size = (size_t)a->npar * sizeof(double), v_size = (size_t)s->nv * sizeof(double);
     int32_t engaging, refused;
     memcpy(done->par, r->par, par_size), memcpy(done->par_set, r->par, par_size), memcpy(done->v_set, r->v, v_size);
-    if (opens >= 0 && r->t - r->acted_at[event] <= SYM_ACCUMULATION * sym_run_one_instant(r, r->t)) e = 0.0;
+    if (opens >= 0 && r->t - r->acted_at[event] <= sym_run_accumulation(r, r->t, e)) e = 0.0;
     else if (r->t - r->acted_at[event] <= sym_run_one_instant(r, r->t)) return SYM_ACTS_WITHOUT_END;
     r->acted_at[event] = r->t;
     sym_load_state(r);

@@ -1,4 +1,4 @@
-"""A run with actions of events, held as a whole against finer steps: errors go on from one part into the next.
+"""A run with actions of events or compliant contacts, held as a whole against finer steps: both amplify errors.
 
 docs/theory/simulation.md, section 8, (18f) to (18j).
 """
@@ -29,7 +29,7 @@ _PATIENCE = 8
 
 @dataclass(frozen=True, kw_only=True)
 class SwitchedRun(SwitchedMotion, ExaminedRun):
-    """A run whose events may act, and that is of several parts where they have.
+    """A run whose events may act, and that is of several parts where they have; or one with compliant contacts.
 
     Attributes:
         par: Run-time parameters (npar) that it began with.
@@ -63,7 +63,9 @@ class SwitchedRun(SwitchedMotion, ExaminedRun):
 
     @property
     def switched(self) -> str:
-        """Its actions of events, in words."""
+        """Its contacts or actions of events, in words."""
+        if self.stepper.actions is None:
+            return "its contacts"
         words = {1: "what its events do", 2: "an action of an event"}
         return words.get(self.parts, f"{self.parts - 1} actions of events")
 
@@ -122,6 +124,8 @@ def switched_run_note(run: SwitchedRun) -> str:
     """Note on what finer steps change of a run over its events; "" where that is little."""
     if run.settings.realtime or not run.model.nv or run.steps < 1 or not len(run.states[0]) or not run.repeatable:
         return ""
+    if run.stepper.actions is None:  # A short run has been held against finer steps, by (17).
+        return "" if run.h and run.short else whole_run_note(run)[0]
     note, shown = whole_run_note(run)
     return note or _near_event_note(run, shown)
 
