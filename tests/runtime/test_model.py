@@ -106,3 +106,9 @@ def test_calls_that_state_no_time_are_at_time_zero() -> None:
         if "t" in method.parameters and not name.startswith("_")
     }
     assert len(defaults) > 20 and set(defaults.values()) == {0.0}, defaults
+
+
+def test_a_model_without_states_has_none_among_its_speeds() -> None:
+    m = model("double_pendulum")
+    for shape in ((m.nv,), (3, m.nv), (2, 3, m.nv)):
+        assert m.states_of(np.ones(shape)).shape == (*shape[:-1], 0)

@@ -14,6 +14,7 @@ from symofros.base.measures import FORMULA, OTHER, Measures
 from symofros.simulation.stepping.sundials import combinations
 from tests.models import compiled
 from tests.overconstrained import Bennett
+from tests.simulation.mechanisms import slide
 
 
 def moving(name: str) -> tuple[sf.Model, np.ndarray, np.ndarray]:
@@ -120,6 +121,17 @@ def test_ida_integrates_a_rolling_disc() -> None:
     run = sf.simulate(model, closed.q, closed.v, 0.5, method="ida", rtol=1e-9, atol=1e-9)
     assert run.outcome.kind == exact.outcome.kind == "finished"
     assert np.abs(model.difference(exact.q[-1], run.q[-1])).max() < 1e-6
+
+
+@pytest.mark.parametrize("method", ["cvode", "dopri5"])
+def test_of_events_that_are_not_followed_the_first_is_named(method: str) -> None:
+    """Waves that come near zero and do not reach it; the second begins later."""
+    wave = "1.001 + sin(1e6*{})"
+    events = {"first": sf.Event(wave.format("t")), "second": sf.Event(wave.format("max(0, t - 0.2)"))}
+    run = sf.simulate(sf.compile(slide(sf.Spring(4.0))), [0.1], [0.0], 0.4, events=events, method=method)
+    (note,) = run.outcome.notes
+    assert note.startswith("event 'first' changes too often in the step from t = ")
+    assert float(note.split("t = ")[1].split()[0]) < 1e-3
 
 
 @pytest.mark.parametrize("scale", [1e-9, 1.0, 1e9])

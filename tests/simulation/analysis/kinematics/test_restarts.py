@@ -80,6 +80,32 @@ def test_searches_start_within_limits() -> None:
     np.testing.assert_array_equal(default_start(m), [2.0, 0.5, -0.25, 0.0])
 
 
+OFFSET = st.floats(-5.0, 5.0)
+
+
+@given(off=st.tuples(OFFSET, OFFSET, OFFSET))
+def test_slides_without_limits_are_drawn_as_far_as_the_target_is_off(off: tuple[float, float, float]) -> None:
+    """By its largest component, whatever its sign."""
+    task = Task(gantry(), {"z.tool": sf.Target(off)}, None, None)
+    solver = task.solver
+    solver.use(solver.everything, 1e-10, 1e-10)
+    solver.reserve_starts(8)
+    assert solver.windows(np.zeros(3))
+    low, high = (solver.memory.view(x, 3) for x in (solver.posture.low, solver.posture.high))
+    np.testing.assert_allclose([-low, high], max(map(abs, off)), rtol=1e-12, atol=1e-15)
+
+
+@cache
+def gantry() -> sf.Model:
+    axes, parents = np.eye(3).tolist(), ("world", "x", "y")
+    bodies = [
+        sf.RigidBody(name, sf.Joint(name, "prismatic", parent, axis=axis), sf.Inertia(1.0), (sf.Frame("tool"),))
+        for name, parent, axis in zip("xyz", parents, axes, strict=True)
+    ]
+    functions = ("frame_pose", "frame_jacobian")
+    return sf.compile(sf.System("gantry", (*bodies,)), sf.Options(functions, backend="interpreter"))
+
+
 SIDE = st.one_of(st.just(np.inf), st.floats(0.0, 10.0))
 
 
