@@ -58,40 +58,33 @@ _FORWARD = f"{_QV}s.setForces(tau)\n"
 _NOW = "s.setTimeStep(0.0)\n"
 _WORLD = f"w = dart.simulation.World()\nw.setGravity(s.getGravity()); w.addSkeleton(s); w.setTimeStep({STEP})\n"
 
-WAYS = (
-    {
-        "mass_matrix": Way("getMassMatrix", f"{_Q}value = s.getMassMatrix()"),
-        "mass_matrix_inverse": Way("getInvMassMatrix", f"{_Q}value = s.getInvMassMatrix()"),
-        "bias": Way("getCoriolisAndGravityForces", f"{_QV}value = s.getCoriolisAndGravityForces()"),
-        "coriolis_forces": Way("getCoriolisForces", f"{_QV}value = s.getCoriolisForces()"),
-        "gravity": Way("getGravityForces", f"{_Q}value = s.getGravityForces()"),
-        "inverse_dynamics": Way("computeInverseDynamics", f"{_QVA}s.computeInverseDynamics()\nvalue = s.getForces()"),
-        "joint_speed_limits": Way("getVelocityUpperLimits", "value = s.getVelocityUpperLimits()"),
-        "joint_force_limits": Way("getForceUpperLimits", "value = s.getForceUpperLimits()"),
-        **{
-            name: Way(native, f"value = [s.getDof(k).{native}() for k in range(s.getNumDofs())]")
-            for name, native in (
-                ("joint_dampings", "getDampingCoefficient"),
-                ("joint_frictions", "getCoulombFriction"),
-                ("joint_stiffnesses", "getSpringStiffness"),
-            )
-        },
-    }
-    | ways_of("""
+_GET_BODY_FORCE = _linear_first("b.getBodyForce()", f"{_QVA}s.computeInverseDynamics()\n")
+_COMPUTE_FORWARD_DYNAMICS = _linear_first("b.getBodyForce()", f"{_FORWARD}{_NOW}s.computeForwardDynamics()\n")
+WAYS = {
+    "mass_matrix": Way("getMassMatrix", f"{_Q}value = s.getMassMatrix()"),
+    "mass_matrix_inverse": Way("getInvMassMatrix", f"{_Q}value = s.getInvMassMatrix()"),
+    "bias": Way("getCoriolisAndGravityForces", f"{_QV}value = s.getCoriolisAndGravityForces()"),
+    "coriolis_forces": Way("getCoriolisForces", f"{_QV}value = s.getCoriolisForces()"),
+    "gravity": Way("getGravityForces", f"{_Q}value = s.getGravityForces()"),
+    "inverse_dynamics": Way("computeInverseDynamics", f"{_QVA}s.computeInverseDynamics()\nvalue = s.getForces()"),
+    "joint_speed_limits": Way("getVelocityUpperLimits", "value = s.getVelocityUpperLimits()"),
+    "joint_force_limits": Way("getForceUpperLimits", "value = s.getForceUpperLimits()"),
+    **{
+        name: Way(native, f"value = [s.getDof(k).{native}() for k in range(s.getNumDofs())]")
+        for name, native in (
+            ("joint_dampings", "getDampingCoefficient"),
+            ("joint_frictions", "getCoulombFriction"),
+            ("joint_stiffnesses", "getSpringStiffness"),
+        )
+    },
+} | ways_of(f"""
 == joint_limits | getPositionLowerLimits, getPositionUpperLimits
 value = np.c_[s.getPositionLowerLimits(), s.getPositionUpperLimits()]
 == joint_limits_of_some | getPositionLowerLimits, getPositionUpperLimits
 x = np.c_[s.getPositionLowerLimits(), s.getPositionUpperLimits()]
 value = np.where(np.isfinite(x), x, 0.0)
-""")
-    | {
-        "joint_wrenches": Way("getBodyForce", _linear_first("b.getBodyForce()", f"{_QVA}s.computeInverseDynamics()\n")),
-        "joint_wrenches_driven": Way(
-            "computeForwardDynamics, getBodyForce",
-            _linear_first("b.getBodyForce()", f"{_FORWARD}{_NOW}s.computeForwardDynamics()\n"),
-        ),
-    }
-    | ways_of(f"""
+== joint_wrenches | getBodyForce | {_GET_BODY_FORCE}
+== joint_wrenches_driven | computeForwardDynamics, getBodyForce | {_COMPUTE_FORWARD_DYNAMICS}
 == forward_dynamics | computeForwardDynamics | {_FORWARD}{_NOW}s.computeForwardDynamics()\nvalue = s.getAccelerations()
 == step_stiffness_implicit | World.step
 import numpy as np
@@ -127,7 +120,6 @@ for b in links:
 == integrate | integratePositions | {_INTEGRATED}value = s.getPositions()
 == difference | getPositionDifferences | {_INTEGRATED}value = s.getPositionDifferences(s.getPositions(), q)
 """)
-)
 _COPIED = {
     "clone": "s = s.clone()\nlinks = [s.getBodyNode(b.getName()) for b in links]\n",
     # Joints of a copy, along axes and at places of their own, are made as those that they copy.

@@ -82,30 +82,20 @@ J = drake.RotationalInertia(*np.diag(m), m[0, 1], m[0, 2], m[1, 2])
 """
 _SIX = "value = [*J.get_moments(), *J.get_products()]"
 _WHOLE = f"{_J}I = drake.SpatialInertia.MakeFromCentralInertia({MASS}, {list(CENTRE)}, J)\n"
-WAYS |= (
-    {
-        "cylinder_about_end_of_density": Way(
-            "SpatialInertia.SolidCylinderWithDensityAboutEnd",
-            _spatial(f"SolidCylinderWithDensityAboutEnd({DENSITY}, x[0], x[1], u)"),
-        ),
-        "cylinder_about_end_of_mass": Way(
-            "SpatialInertia.SolidCylinderWithMassAboutEnd",
-            _spatial(f"SolidCylinderWithMassAboutEnd({MASS}, x[0], x[1], u)"),
-        ),
-    }
-    | ways_of(f"""
+_SOLID_CYLINDER_WITH_DENSITY_ABOUT_END = _spatial(f"SolidCylinderWithDensityAboutEnd({DENSITY}, x[0], x[1], u)")
+_SOLID_CYLINDER_WITH_MASS_ABOUT_END = _spatial(f"SolidCylinderWithMassAboutEnd({MASS}, x[0], x[1], u)")
+_THIN_ROD_WITH_MASS = _spatial(f"ThinRodWithMass({MASS}, x[0], u)")
+_THIN_ROD_WITH_MASS_ABOUT_END = _spatial(f"ThinRodWithMassAboutEnd({MASS}, x[0], u)")
+WAYS |= ways_of(f"""
+== cylinder_about_end_of_density | SpatialInertia.SolidCylinderWithDensityAboutEnd
+{_SOLID_CYLINDER_WITH_DENSITY_ABOUT_END}
+== cylinder_about_end_of_mass | SpatialInertia.SolidCylinderWithMassAboutEnd | {_SOLID_CYLINDER_WITH_MASS_ABOUT_END}
 == cylinder_about_end_of_mass:UnitInertia | UnitInertia.SolidCylinderAboutEnd
 {_BEGIN}value = told(drake.SpatialInertia({MASS}, u * x[1] / 2, drake.UnitInertia.SolidCylinderAboutEnd(x[0], x[1], u)))
-""")
-    | {
-        "rod": Way("SpatialInertia.ThinRodWithMass", _spatial(f"ThinRodWithMass({MASS}, x[0], u)")),
-        "rod:UnitInertia": Way("UnitInertia.ThinRod", _unit("ThinRod(x[0], u)")),
-        "rod:StraightLine": Way("UnitInertia.StraightLine", _unit("StraightLine(x[0] ** 2 / 12, u)")),
-        "rod_about_end": Way(
-            "SpatialInertia.ThinRodWithMassAboutEnd", _spatial(f"ThinRodWithMassAboutEnd({MASS}, x[0], u)")
-        ),
-    }
-    | ways_of(f"""
+== rod | SpatialInertia.ThinRodWithMass | {_THIN_ROD_WITH_MASS}
+== rod:UnitInertia | UnitInertia.ThinRod | {_unit("ThinRod(x[0], u)")}
+== rod:StraightLine | UnitInertia.StraightLine | {_unit("StraightLine(x[0] ** 2 / 12, u)")}
+== rod_about_end | SpatialInertia.ThinRodWithMassAboutEnd | {_THIN_ROD_WITH_MASS_ABOUT_END}
 == solid_cylinder_of_mass:AxiallySymmetric | UnitInertia.AxiallySymmetric
 {_unit("AxiallySymmetric(x[0] ** 2 / 2, x[0] ** 2 / 4 + x[1] ** 2 / 12, u)")}
 == solid_ball_of_mass:TriaxiallySymmetric | UnitInertia.TriaxiallySymmetric
@@ -157,4 +147,3 @@ P = X.rotation().matrix()
 P = {MASS} / 5 * P @ (np.sum(lengths**2) * np.eye(3) - np.diag(lengths**2)) @ P.T
 value = [P[0, 0], P[1, 1], P[2, 2], P[0, 1], P[0, 2], P[1, 2]]
 """)
-)

@@ -91,51 +91,39 @@ _TOLD = (
     " for end in ('Lower', 'Upper')]"
 )
 _INERTIA = "drake.SpatialInertia(y, np.zeros(3), drake.UnitInertia(1.0, 1.0, 1.0))"
-WAYS |= {
-    "coordinates_set": Way("PrismaticJoint.set_translation", f"{_MADE}{_STATE}value = p.GetPositions(c)[qs]"),
-    **{
-        f"coordinates_set:{way}": Way(name, f"{text}value = {_BY_INSTANCE}")
-        for way, name, text in (
-            (
-                "instances",
-                "SetPositions of a model instance",
-                f"{_MADE}p.SetPositions(c, two, v[2:])\np.SetPositions(c, one, v[:2])\n",
-            ),
-            (
-                "array",
-                "SetPositionsInArray",
-                f"{_MADE}x = np.zeros(3)\nx[qs] = 7.0\np.SetPositionsInArray(one, v[:2], x)\n"
-                "p.SetPositionsInArray(two, v[2:], x)\np.SetPositions(c, x)\n",
-            ),
-            (
-                "default",
-                "PrismaticJoint.set_default_translation after Finalize",
-                f"{_MADE}for j, y in zip(jj, v): j.set_default_translation(y)\n{_CONTEXT}",
-            ),
-            (
-                "default before Finalize",
-                "PrismaticJoint.set_default_translation",
-                f"{_PLANT}for j, y in zip(jj, v): j.set_default_translation(y)\n{_DONE}{_CONTEXT}",
-            ),
-            (
-                "default of instances",
-                "SetDefaultPositions of a model instance",
-                f"{_MADE}p.SetDefaultPositions(two, v[2:])\np.SetDefaultPositions(one, v[:2])\n{_CONTEXT}",
-            ),
-            (
-                "default positions",
-                "Joint.set_default_positions, SetDefaultContext",
-                f"{_MADE}for j, y in zip(jj, v): j.set_default_positions([y])\np.SetDefaultContext(c)\n",
-            ),
-            (
-                "Clone",
-                "SetDefaultPositions, Clone",
-                f"{_MADE}p.SetDefaultPositions(two, v[2:])\n"
-                f"p.SetDefaultPositions(one, v[:2])\np = p.Clone()\n{_CONTEXT}",
-            ),
-        )
-    },
-} | ways_of(f"""
+WAYS |= ways_of(f"""
+== coordinates_set | PrismaticJoint.set_translation | {_MADE}{_STATE}value = p.GetPositions(c)[qs]
+== coordinates_set:instances | SetPositions of a model instance
+{_MADE}p.SetPositions(c, two, v[2:])
+p.SetPositions(c, one, v[:2])
+value = {_BY_INSTANCE}
+== coordinates_set:array | SetPositionsInArray
+{_MADE}x = np.zeros(3)
+x[qs] = 7.0
+p.SetPositionsInArray(one, v[:2], x)
+p.SetPositionsInArray(two, v[2:], x)
+p.SetPositions(c, x)
+value = {_BY_INSTANCE}
+== coordinates_set:default | PrismaticJoint.set_default_translation after Finalize
+{_MADE}for j, y in zip(jj, v): j.set_default_translation(y)
+{_CONTEXT}value = {_BY_INSTANCE}
+== coordinates_set:default before Finalize | PrismaticJoint.set_default_translation
+{_PLANT}for j, y in zip(jj, v): j.set_default_translation(y)
+{_DONE}{_CONTEXT}value = {_BY_INSTANCE}
+== coordinates_set:default of instances | SetDefaultPositions of a model instance
+{_MADE}p.SetDefaultPositions(two, v[2:])
+p.SetDefaultPositions(one, v[:2])
+{_CONTEXT}value = {_BY_INSTANCE}
+== coordinates_set:default positions | Joint.set_default_positions, SetDefaultContext
+{_MADE}for j, y in zip(jj, v): j.set_default_positions([y])
+p.SetDefaultContext(c)
+value = {_BY_INSTANCE}
+== coordinates_set:Clone | SetDefaultPositions, Clone
+{_MADE}p.SetDefaultPositions(two, v[2:])
+p.SetDefaultPositions(one, v[:2])
+p = p.Clone()
+{_CONTEXT}value = {_BY_INSTANCE}
+""") | ways_of(f"""
 == coordinates_set:GetDefaultPositions | GetDefaultPositions
 {_MADE}p.SetDefaultPositions(two, v[2:])
 p.SetDefaultPositions(one, v[:2])

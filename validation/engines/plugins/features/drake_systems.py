@@ -62,45 +62,40 @@ def _controlled(made: str, more: str) -> str:
 
 
 _ESTIMATED = "s.get_input_port_estimated_state().FixValue(e, tau[:2])\n"
-WAYS |= {
-    "linear_update": Way(
-        "AffineSystem with a period",
-        f"{_DISCRETE}c = system.CreateDefaultContext()\nc.SetDiscreteState(tau)\n"
-        "value = system.EvalUniquePeriodicDiscreteUpdate(c).value()",
-    ),
-    "linear_update:Simulator": Way(
-        "AdvanceTo of an AffineSystem with a period",
-        f"{_DISCRETE}sim = drake.Simulator(system)\nsim.get_mutable_context().SetDiscreteState(tau)\n"
-        f"sim.AdvanceTo({PERIOD / 2})\nvalue = sim.get_context().get_discrete_state_vector().CopyToVector()",
-    ),
-    "linear_output": Way(
-        "LinearSystem", f"{_LINEAR}system.get_input_port().FixValue(c, f(v))\nvalue = system.get_output_port().Eval(c)"
-    ),
-    "pendulum_linear": Way("Linearize", f"{_PENDULUM}{_HELD}linear = drake.Linearize(p, c, {_OF})\n{_OUT}"),
-    "pendulum_linear:FirstOrderTaylorApproximation": Way(
-        "FirstOrderTaylorApproximation",
-        f"{_PENDULUM}p.SetVelocities(c, v[1:2])\n"
-        f"{_HELD}linear = drake.FirstOrderTaylorApproximation(p, c, {_OF})\n{_OUT}",
-    ),
-    "pendulum_torque": Way(
-        "InverseDynamics",
-        _controlled("InverseDynamics(p)", f"{_ESTIMATED}s.get_input_port_desired_acceleration().FixValue(e, a[:1])\n")
-        + "value = s.get_output_port_generalized_force().Eval(e)",
-    ),
-    "pendulum_holding": Way(
-        "InverseDynamics, kGravityCompensation",
-        _controlled("InverseDynamics(p, drake.InverseDynamics.kGravityCompensation)", _ESTIMATED)
-        + "value = s.get_output_port_generalized_force().Eval(e)",
-    ),
-    "pendulum_stiffness": Way(
-        "JointStiffnessController",
-        _controlled(
-            f"JointStiffnessController(p, [{GAINS[0]}], [{GAINS[2]}])",
-            f"{_ESTIMATED}s.get_input_port_desired_state().FixValue(e, v[:2])\n",
-        )
-        + "value = s.get_output_port_actuation().Eval(e)",
-    ),
-} | ways_of(f"""
+_INVERSE_DYNAMICS = (
+    _controlled("InverseDynamics(p)", f"{_ESTIMATED}s.get_input_port_desired_acceleration().FixValue(e, a[:1])\n")
+    + "value = s.get_output_port_generalized_force().Eval(e)"
+)
+_JOINT_STIFFNESS_CONTROLLER = (
+    _controlled(
+        f"JointStiffnessController(p, [{GAINS[0]}], [{GAINS[2]}])",
+        f"{_ESTIMATED}s.get_input_port_desired_state().FixValue(e, v[:2])\n",
+    )
+    + "value = s.get_output_port_actuation().Eval(e)"
+)
+WAYS |= ways_of(f"""
+== linear_update | AffineSystem with a period
+{_DISCRETE}c = system.CreateDefaultContext()
+c.SetDiscreteState(tau)
+value = system.EvalUniquePeriodicDiscreteUpdate(c).value()
+== linear_update:Simulator | AdvanceTo of an AffineSystem with a period
+{_DISCRETE}sim = drake.Simulator(system)
+sim.get_mutable_context().SetDiscreteState(tau)
+sim.AdvanceTo({PERIOD / 2})
+value = sim.get_context().get_discrete_state_vector().CopyToVector()
+== linear_output | LinearSystem
+{_LINEAR}system.get_input_port().FixValue(c, f(v))
+value = system.get_output_port().Eval(c)
+== pendulum_linear | Linearize | {_PENDULUM}{_HELD}linear = drake.Linearize(p, c, {_OF})\n{_OUT}
+== pendulum_linear:FirstOrderTaylorApproximation | FirstOrderTaylorApproximation
+{_PENDULUM}p.SetVelocities(c, v[1:2])
+{_HELD}linear = drake.FirstOrderTaylorApproximation(p, c, {_OF})
+{_OUT}
+== pendulum_torque | InverseDynamics | {_INVERSE_DYNAMICS}
+== pendulum_holding | InverseDynamics, kGravityCompensation
+{_controlled("InverseDynamics(p, drake.InverseDynamics.kGravityCompensation)", _ESTIMATED)}value = \
+s.get_output_port_generalized_force().Eval(e)
+== pendulum_stiffness | JointStiffnessController | {_JOINT_STIFFNESS_CONTROLLER}
 == regulator ~ 1e-09 | LinearQuadraticRegulator
 {_X}K, S = drake.LinearQuadraticRegulator({_INTEGRATOR}, np.diag(x[:2]), [[x[2]]])
 value = [*K.flat, *S.flat]

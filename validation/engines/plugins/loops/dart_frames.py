@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...interface import Tree
 from ...truth.points import POINT
 from ...truth.sensed import WRENCH
-from ..writing.source import Way, ways_of
+from ..writing.source import ways_of
 
 _Q = "s.setPositions(q)\n"
 _QV = f"{_Q}s.setVelocities(v)\n"
@@ -54,51 +54,24 @@ _OWN = """own = [
 W = dart.dynamics.Frame.World()
 """
 _FLAT = "value = [[*x.translation(), *x.rotation().flat] for x in X]"
-WAYS |= {
-    name: Way(native, f"{state}{_OWN}{code}")
-    for name, native, state, code in (
-        ("frame_poses", "SimpleFrame.getTransform", _Q, f"X = [f.getTransform() for f in own]\n{_FLAT}"),
-        ("frame_poses_seen", "getTransform, withRespectTo", _Q, f"X = [f.getTransform(own[0]) for f in own]\n{_FLAT}"),
-        (
-            "frame_velocities",
-            "SimpleFrame.getLinearVelocity",
-            _QV,
-            "value = [[*f.getLinearVelocity(), *f.getAngularVelocity()] for f in own]",
-        ),
-        (
-            "frame_velocities_seen",
-            "SimpleFrame.getLinearVelocity relative to",
-            _QV,
-            "A = own[0]\nvalue = [[*f.getLinearVelocity(A, A), *f.getAngularVelocity(A, A)] for f in own]",
-        ),
-        (
-            "frame_accelerations",
-            "SimpleFrame.getLinearAcceleration",
-            _QVA,
-            "value = [[*f.getLinearAcceleration(), *f.getAngularAcceleration()] for f in own]",
-        ),
-        ("velocimeters", "getLinearVelocity, inCoordinatesOf", _QV, "value = [f.getLinearVelocity(W, f) for f in own]"),
-        ("gyroscopes", "getAngularVelocity, inCoordinatesOf", _QV, "value = [f.getAngularVelocity(W, f) for f in own]"),
-        (
-            "gyroscopes:getSpatialVelocity",
-            "SimpleFrame.getSpatialVelocity",
-            _QV,
-            "value = [f.getSpatialVelocity()[:3].ravel() for f in own]",
-        ),
-        (
-            "accelerometers",
-            "getLinearAcceleration, inCoordinatesOf",
-            _QVA,
-            "value = [f.getLinearAcceleration(W, f) - f.getTransform().rotation().T @ gravity for f in own]",
-        ),
-        (
-            "angular_accelerations",
-            "getAngularAcceleration",
-            _QVA,
-            "value = [f.getAngularAcceleration() for f in own]",
-        ),
-    )
-}
+WAYS |= ways_of(f"""
+== frame_poses | SimpleFrame.getTransform | {_Q}{_OWN}X = [f.getTransform() for f in own]\n{_FLAT}
+== frame_poses_seen | getTransform, withRespectTo | {_Q}{_OWN}X = [f.getTransform(own[0]) for f in own]\n{_FLAT}
+== frame_velocities | SimpleFrame.getLinearVelocity
+{_QV}{_OWN}value = [[*f.getLinearVelocity(), *f.getAngularVelocity()] for f in own]
+== frame_velocities_seen | SimpleFrame.getLinearVelocity relative to
+{_QV}{_OWN}A = own[0]
+value = [[*f.getLinearVelocity(A, A), *f.getAngularVelocity(A, A)] for f in own]
+== frame_accelerations | SimpleFrame.getLinearAcceleration
+{_QVA}{_OWN}value = [[*f.getLinearAcceleration(), *f.getAngularAcceleration()] for f in own]
+== velocimeters | getLinearVelocity, inCoordinatesOf | {_QV}{_OWN}value = [f.getLinearVelocity(W, f) for f in own]
+== gyroscopes | getAngularVelocity, inCoordinatesOf | {_QV}{_OWN}value = [f.getAngularVelocity(W, f) for f in own]
+== gyroscopes:getSpatialVelocity | SimpleFrame.getSpatialVelocity
+{_QV}{_OWN}value = [f.getSpatialVelocity()[:3].ravel() for f in own]
+== accelerometers | getLinearAcceleration, inCoordinatesOf
+{_QVA}{_OWN}value = [f.getLinearAcceleration(W, f) - f.getTransform().rotation().T @ gravity for f in own]
+== angular_accelerations | getAngularAcceleration | {_QVA}{_OWN}value = [f.getAngularAcceleration() for f in own]
+""")
 _PUSH, _TURN = f"np.array({list(WRENCH[:3])})", f"np.array({list(WRENCH[3:])})"
 _STILL = f"{_Q}s.setVelocities(0 * q)\ns.setAccelerations(0 * q)\ns.clearExternalForces()\n"
 _DONE = "s.computeInverseDynamics(True)\nvalue = s.getGravityForces() - s.getForces()\ns.clearExternalForces()"

@@ -64,72 +64,6 @@ def _poses(of: str, over: str = "b in links") -> str:
     return f"at = [{of} for {over}]\nvalue = [[*x.translation(), *x.rotation().matrix().flat] for x in at]"
 
 
-_FRAMES = {
-    "frame_poses": ("Frame.CalcPoseInWorld", Q, _poses("f.CalcPoseInWorld(c)", "f in own")),
-    "frame_poses_seen": ("Frame.CalcPose", Q, _poses("f.CalcPose(c, own[0])", "f in own")),
-    "frame_velocities": ("Frame.CalcSpatialVelocityInWorld", QV, _each("f.CalcSpatialVelocityInWorld(c)", "f in own")),
-    "frame_velocities_seen": (
-        "Frame.CalcSpatialVelocity",
-        QV,
-        _each("f.CalcSpatialVelocity(c, own[0], own[0])", "f in own"),
-    ),
-    "frame_accelerations": (
-        "Frame.CalcSpatialAccelerationInWorld",
-        DRIVEN,
-        _each("f.CalcSpatialAccelerationInWorld(c)", "f in own"),
-    ),
-    "frame_velocity_products": (
-        "CalcBiasSpatialAcceleration of a frame",
-        QV,
-        _each("p.CalcBiasSpatialAcceleration(c, kV, f, [0, 0, 0], W, W)", "f in own"),
-    ),
-    "frame_jacobians:frame": (
-        "CalcJacobianSpatialVelocity of a frame",
-        Q,
-        "value = [np.roll(p.CalcJacobianSpatialVelocity(c, kV, f, [0, 0, 0], W, W), 3, axis=0) for f in own]",
-    ),
-    "frame_poses:CalcRotationMatrixInWorld": (
-        "Frame.CalcRotationMatrixInWorld, CalcPointsPositions",
-        Q,
-        "value = [[*p.CalcPointsPositions(c, f, [[0], [0], [0]], W).ravel(),"
-        " *f.CalcRotationMatrixInWorld(c).matrix().flat] for f in own]",
-    ),
-    "frame_poses:CalcPoseInBodyFrame": (
-        "Frame.CalcPoseInBodyFrame",
-        Q,
-        _poses("f.body().EvalPoseInWorld(c) @ f.CalcPoseInBodyFrame(c)", "f in own"),
-    ),
-    "frame_poses:GetFixedPoseInBodyFrame": (
-        "Frame.GetFixedPoseInBodyFrame, GetFixedRotationMatrixInBodyFrame",
-        Q,
-        _poses(
-            "drake.RigidTransform(f.body().EvalPoseInWorld(c).rotation() @ f.GetFixedRotationMatrixInBodyFrame(),"
-            " f.body().EvalPoseInWorld(c) @ f.GetFixedPoseInBodyFrame().translation())",
-            "f in own",
-        ),
-    ),
-    "frame_poses_seen:CalcRotationMatrix": (
-        "Frame.CalcRotationMatrix, CalcPointsPositions in a frame",
-        Q,
-        "value = [[*p.CalcPointsPositions(c, f, [[0], [0], [0]], own[0]).ravel(),"
-        " *f.CalcRotationMatrix(c, own[0]).matrix().flat] for f in own]",
-    ),
-    "frame_velocities:CalcRelativeSpatialVelocity": (
-        "Frame.CalcRelativeSpatialVelocity",
-        QV,
-        _each("f.CalcRelativeSpatialVelocity(c, W, W)", "f in own"),
-    ),
-    "gyroscopes:CalcAngularVelocity": (
-        "Frame.CalcAngularVelocity",
-        QV,
-        "value = [f.CalcAngularVelocity(c, W, f) for f in own]",
-    ),
-    "velocimeters": (
-        "Frame.CalcSpatialVelocity",
-        QV,
-        "value = [f.CalcSpatialVelocity(c, W, f).translational() for f in own]",
-    ),
-}
 _SPATIAL = f"""applied = []
 for k, R, r in sensed:
     one, X = drake.ExternallyAppliedSpatialForce(), p.EvalBodyPoseInWorld(c, links[k]).rotation().matrix()
@@ -138,7 +72,41 @@ for k, R, r in sensed:
     applied.append(one)
 """
 _OF_JOINTS = "joints' own setters"
-WAYS = {name: Way(native, f"{before}{_OWN}{code}") for name, (native, before, code) in _FRAMES.items()}
+_GET_FIXED_POSE_IN_BODY_FRAME = f"{Q}{_OWN}" + _poses(
+    "drake.RigidTransform(f.body().EvalPoseInWorld(c).rotation() @ f.GetFixedRotationMatrixInBodyFrame(),"
+    " f.body().EvalPoseInWorld(c) @ f.GetFixedPoseInBodyFrame().translation())",
+    "f in own",
+)
+WAYS = ways_of(f"""
+== frame_poses | Frame.CalcPoseInWorld | {Q}{_OWN}{_poses("f.CalcPoseInWorld(c)", "f in own")}
+== frame_poses_seen | Frame.CalcPose | {Q}{_OWN}{_poses("f.CalcPose(c, own[0])", "f in own")}
+== frame_velocities | Frame.CalcSpatialVelocityInWorld
+{QV}{_OWN}{_each("f.CalcSpatialVelocityInWorld(c)", "f in own")}
+== frame_velocities_seen | Frame.CalcSpatialVelocity
+{QV}{_OWN}{_each("f.CalcSpatialVelocity(c, own[0], own[0])", "f in own")}
+== frame_accelerations | Frame.CalcSpatialAccelerationInWorld
+{DRIVEN}{_OWN}{_each("f.CalcSpatialAccelerationInWorld(c)", "f in own")}
+== frame_velocity_products | CalcBiasSpatialAcceleration of a frame
+{QV}{_OWN}{_each("p.CalcBiasSpatialAcceleration(c, kV, f, [0, 0, 0], W, W)", "f in own")}
+== frame_jacobians:frame | CalcJacobianSpatialVelocity of a frame
+{Q}{_OWN}value = [np.roll(p.CalcJacobianSpatialVelocity(c, kV, f, [0, 0, 0], W, W), 3, axis=0) for f in own]
+== frame_poses:CalcRotationMatrixInWorld | Frame.CalcRotationMatrixInWorld, CalcPointsPositions
+{Q}{_OWN}value = [[*p.CalcPointsPositions(c, f, [[0], [0], [0]], W).ravel(), \
+*f.CalcRotationMatrixInWorld(c).matrix().flat] for f in own]
+== frame_poses:CalcPoseInBodyFrame | Frame.CalcPoseInBodyFrame
+{Q}{_OWN}{_poses("f.body().EvalPoseInWorld(c) @ f.CalcPoseInBodyFrame(c)", "f in own")}
+== frame_poses:GetFixedPoseInBodyFrame | Frame.GetFixedPoseInBodyFrame, GetFixedRotationMatrixInBodyFrame
+{_GET_FIXED_POSE_IN_BODY_FRAME}
+== frame_poses_seen:CalcRotationMatrix | Frame.CalcRotationMatrix, CalcPointsPositions in a frame
+{Q}{_OWN}value = [[*p.CalcPointsPositions(c, f, [[0], [0], [0]], own[0]).ravel(), *f.CalcRotationMatrix(c, \
+own[0]).matrix().flat] for f in own]
+== frame_velocities:CalcRelativeSpatialVelocity | Frame.CalcRelativeSpatialVelocity
+{QV}{_OWN}{_each("f.CalcRelativeSpatialVelocity(c, W, W)", "f in own")}
+== gyroscopes:CalcAngularVelocity | Frame.CalcAngularVelocity
+{QV}{_OWN}value = [f.CalcAngularVelocity(c, W, f) for f in own]
+== velocimeters | Frame.CalcSpatialVelocity
+{QV}{_OWN}value = [f.CalcSpatialVelocity(c, W, f).translational() for f in own]
+""")
 WAYS |= {
     f"{name}:joints": Way(_OF_JOINTS, _BY_JOINTS + code)
     for name, code in {

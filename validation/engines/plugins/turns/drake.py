@@ -73,46 +73,36 @@ b = p.AddRigidBody('b', drake.SpatialInertia(1.0, np.zeros(3), drake.UnitInertia
 """
 _DONE = "p.Finalize()\nc = p.CreateDefaultContext()\n"
 _STANDS = "p.EvalBodyPoseInWorld(c, b)"
+_STANDING = _flat(f"{_STANDS}.inverse()")
 _JOINED = "j = p.AddJoint(drake.{}Joint('j', p.world_frame(), b.body_frame()))\n"
 _FRAME = "F = p.AddFrame(drake.FixedOffsetFrame('F', p.world_frame(), X))\n"
-_PLACED = {
-    f"pose_inverse:{way}": Way(name, f"{_FREE}{code}{_flat(f'{_STANDS}.inverse()')}")
-    for way, name, code in (
-        ("SetFreeBodyPose", "SetFreeBodyPose", f"{_DONE}p.SetFreeBodyPose(c, b, X)\n"),
-        ("default", "SetDefaultFreeBodyPose", f"p.SetDefaultFreeBodyPose(b, X)\n{_DONE}"),
-        (
-            "default after Finalize",
-            "SetDefaultFreeBodyPose after Finalize",
-            "p.Finalize()\np.SetDefaultFreeBodyPose(b, X)\nc = p.CreateDefaultContext()\n",
-        ),
-        (
-            "RpyFloatingJoint",
-            "RpyFloatingJoint.SetPose",
-            f"{_JOINED.format('RpyFloating')}{_DONE}j.SetPose(c, X)\n",
-        ),
-        (
-            "QuaternionFloatingJoint",
-            "QuaternionFloatingJoint.SetPose",
-            f"{_JOINED.format('QuaternionFloating')}{_DONE}j.SetPose(c, X)\n",
-        ),
-        (
-            "SetDefaultPose",
-            "Joint.SetDefaultPose",
-            f"{_JOINED.format('RpyFloating')}j.SetDefaultPose(X)\n{_DONE}",
-        ),
-        (
-            "default of a floating base",
-            "SetDefaultFloatingBaseBodyPose after Finalize",
-            "p.Finalize()\np.SetDefaultFloatingBaseBodyPose(b, X)\nc = p.CreateDefaultContext()\n",
-        ),
-        (
-            "SetFloatingBaseBodyPoseInWorldFrame",
-            "SetFloatingBaseBodyPoseInWorldFrame",
-            f"{_DONE}p.SetFloatingBaseBodyPoseInWorldFrame(c, b, X)\n",
-        ),
-        ("WeldJoint", "WeldFrames", f"p.WeldFrames(p.world_frame(), b.body_frame(), X)\n{_DONE}"),
-    )
-}
+_PLACED = ways_of(f"""
+== pose_inverse:SetFreeBodyPose | SetFreeBodyPose | {_FREE}{_DONE}p.SetFreeBodyPose(c, b, X)\n{_STANDING}
+== pose_inverse:default | SetDefaultFreeBodyPose | {_FREE}p.SetDefaultFreeBodyPose(b, X)\n{_DONE}{_STANDING}
+== pose_inverse:default after Finalize | SetDefaultFreeBodyPose after Finalize
+{_FREE}p.Finalize()
+p.SetDefaultFreeBodyPose(b, X)
+c = p.CreateDefaultContext()
+{_STANDING}
+== pose_inverse:RpyFloatingJoint | RpyFloatingJoint.SetPose
+{_FREE}{_JOINED.format("RpyFloating")}{_DONE}j.SetPose(c, X)
+{_STANDING}
+== pose_inverse:QuaternionFloatingJoint | QuaternionFloatingJoint.SetPose
+{_FREE}{_JOINED.format("QuaternionFloating")}{_DONE}j.SetPose(c, X)
+{_STANDING}
+== pose_inverse:SetDefaultPose | Joint.SetDefaultPose
+{_FREE}{_JOINED.format("RpyFloating")}j.SetDefaultPose(X)
+{_DONE}{_STANDING}
+== pose_inverse:default of a floating base | SetDefaultFloatingBaseBodyPose after Finalize
+{_FREE}p.Finalize()
+p.SetDefaultFloatingBaseBodyPose(b, X)
+c = p.CreateDefaultContext()
+{_STANDING}
+== pose_inverse:SetFloatingBaseBodyPoseInWorldFrame | SetFloatingBaseBodyPoseInWorldFrame
+{_FREE}{_DONE}p.SetFloatingBaseBodyPoseInWorldFrame(c, b, X)
+{_STANDING}
+== pose_inverse:WeldJoint | WeldFrames | {_FREE}p.WeldFrames(p.world_frame(), b.body_frame(), X)\n{_DONE}{_STANDING}
+""")
 _PLACED |= ways_of(f"""
 == pose_inverse:GetFreeBodyPose | GetFreeBodyPose
 {_FREE}{_DONE}p.SetFreeBodyPose(c, b, X)

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from ...truth.geometry.poses import CENTRE, MASS, MOMENTS
-from ..writing.source import HALF_TURNS, ON_END, Way, ways_of
+from ..writing.source import HALF_TURNS, ON_END, ways_of
 
 IMPORTS = ("import idyntree.bindings as iDynTree",)
 # Mass, m c, Ixx, Ixy, Ixz, Iyy, Iyz, Izz of iDynTree, in the order that has Iyy before Ixz.
@@ -29,21 +29,22 @@ I = iDynTree.SpatialInertia({MASS}, iDynTree.Position(*c), body(about + {MASS} *
 _AGAIN = "J = iDynTree.SpatialInertia()\nJ.{}\nvalue = J.asMatrix().toNumPy()"
 _LINE = "u = v + [4.0, -8.0, 8.0]\nline = iDynTree.Axis(iDynTree.Direction(*u), iDynTree.Position(*{}))\n"
 
-WAYS = (
-    ways_of(f"""
+_AS_QUATERNION = (
+    f"{HALF_TURNS}value = [iDynTree.Rotation.RotationFromQuaternion("
+    "iDynTree.Rotation.FromPython(H).asQuaternion()).toNumPy().ravel() for H in half_turns]"
+)
+_FROM_ROTATIONAL_INERTIA_WRT_CENTER_OF_MASS = _I + _AGAIN.format(
+    f"fromRotationalInertiaWrtCenterOfMass({MASS}, iDynTree.Position(*c), body(about))"
+)
+_GET_CENTER_OF_MASS = _I + _AGAIN.format(
+    "fromRotationalInertiaWrtCenterOfMass(I.getMass(), I.getCenterOfMass(), I.getRotationalInertiaWrtCenterOfMass())"
+)
+WAYS = ways_of(f"""
 == rotation_matrix | Rotation.RotationFromQuaternion | {_R}{_ROWS.format(of="R")}
 == rotation_matrix:asQuaternion | Rotation.asQuaternion
 {_R}{_ROWS.format(of="iDynTree.Rotation.RotationFromQuaternion(R.asQuaternion())")}
 == rotation_matrix:asRPY | Rotation.asRPY, RPY | {_R}{_ROWS.format(of="iDynTree.Rotation.RPY(*R.asRPY().toNumPy())")}
-""")
-    | {
-        "rotation_half_turns": Way(
-            "Rotation.asQuaternion of a half turn",
-            f"{HALF_TURNS}value = [iDynTree.Rotation.RotationFromQuaternion("
-            "iDynTree.Rotation.FromPython(H).asQuaternion()).toNumPy().ravel() for H in half_turns]",
-        ),
-    }
-    | ways_of(f"""
+== rotation_half_turns | Rotation.asQuaternion of a half turn | {_AS_QUATERNION}
 == rotation_composed | Rotation * Rotation | {_TWO}{_ROWS.format(of="(R * Q)")}
 == rotation_composed:compose | Rotation.compose | {_TWO}{_ROWS.format(of="iDynTree.Rotation.compose(R, Q)")}
 == rotation_inverse | Rotation.inverse | {_R}{_ROWS.format(of="R.inverse()")}
@@ -97,31 +98,15 @@ Z.fromHomogeneousTransform(Y.asHomogeneousTransform())
 == power | Twist.dot | {_V}{_F}value = [V.dot(F)]
 == power:Wrench | Wrench.dot | {_V}{_F}value = [F.dot(V)]
 == spatial_inertia | SpatialInertia.asMatrix | {_I}value = I.asMatrix().toNumPy()
-""")
-    | {
-        "spatial_inertia:fromRotationalInertiaWrtCenterOfMass": Way(
-            "SpatialInertia.fromRotationalInertiaWrtCenterOfMass",
-            _I + _AGAIN.format(f"fromRotationalInertiaWrtCenterOfMass({MASS}, iDynTree.Position(*c), body(about))"),
-        ),
-    }
-    | ways_of(f"""
+== spatial_inertia:fromRotationalInertiaWrtCenterOfMass | SpatialInertia.fromRotationalInertiaWrtCenterOfMass
+{_FROM_ROTATIONAL_INERTIA_WRT_CENTER_OF_MASS}
 == spatial_inertia:fromVector | SpatialInertia.asVector, fromVector | {_I}{_AGAIN.format("fromVector(I.asVector())")}
 == spatial_inertia:RigidBodyInertiaNonLinearParametrization | RigidBodyInertiaNonLinearParametrization
 {_I}N = iDynTree.RigidBodyInertiaNonLinearParametrization()
 N.fromRigidBodyInertia(I)
 value = N.toRigidBodyInertia().asMatrix().toNumPy()
-""")
-    | {
-        "spatial_inertia:of the mass centre": Way(
-            "SpatialInertia.getCenterOfMass, getRotationalInertiaWrtCenterOfMass",
-            _I
-            + _AGAIN.format(
-                "fromRotationalInertiaWrtCenterOfMass("
-                "I.getMass(), I.getCenterOfMass(), I.getRotationalInertiaWrtCenterOfMass())"
-            ),
-        ),
-    }
-    | ways_of(f"""
+== spatial_inertia:of the mass centre | SpatialInertia.getCenterOfMass, getRotationalInertiaWrtCenterOfMass
+{_GET_CENTER_OF_MASS}
 == inertia_parameters | SpatialInertia.asVector | {_I}value = I.asVector().toNumPy()[list({PARAMETERS})]
 == spatial_inertia_inverse | SpatialInertia.getInverse | {_I}value = I.getInverse().toNumPy()
 == spatial_inertia_placed | Transform * SpatialInertia | {_X}{_I}value = (X * I).asMatrix().toNumPy()
@@ -144,4 +129,3 @@ value = N.toRigidBodyInertia().asMatrix().toNumPy()
 == line_nearest | Axis.getPointOnAxisClosestToGivenPoint
 {_LINE.format("a")}value = line.getPointOnAxisClosestToGivenPoint(iDynTree.Position(*tau)).toNumPy()
 """)
-)
