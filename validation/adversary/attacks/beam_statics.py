@@ -61,11 +61,6 @@ def values_of(scene: Scene) -> dict[str, float]:
     }
 
 
-def system(scene: Scene) -> sf.System:
-    """The cantilever at this size."""
-    return cantilever().at(**values_of(scene))
-
-
 def judge(scene: Scene) -> Verdict:
     """The tip and its stated error."""
     one = cantilever()
@@ -92,6 +87,6 @@ ATTACK = Attack(
     "an equilibrium errs by no more than three times the error that it states",
     "the elastica by collocation",
     _scenes,
-    system,
+    lambda scene: cantilever().at(**values_of(scene)),
     judge,
 )

@@ -124,11 +124,6 @@ def _values(scene: Scene) -> dict[str, float]:
     return sizes | {"J": scene["J"] * scene["m2"] * scene["L"] ** 2}
 
 
-def system(scene: Scene) -> sf.System:
-    """The mechanism at these sizes."""
-    return mechanism(scene["mechanism"], "multipliers").at(**_values(scene))
-
-
 def state(scene: Scene, model: sf.Model) -> tuple[Array, Array]:
     """Q and v; loops need not be closed for the equations of accelerations to hold."""
     lengths = _sizes(model, scene)
@@ -225,6 +220,6 @@ ATTACK = Attack(
     "accelerations under constraints are backward stable in both forms, and no condition is dropped that is one",
     "the same equations, evaluated and solved with fifty digits",
     _scenes,
-    system,
+    lambda scene: mechanism(scene["mechanism"], "multipliers").at(**_values(scene)),
     judge,
 )

@@ -58,11 +58,6 @@ def _values(scene: Scene) -> dict[str, float]:
     return {"m": scene["m"], "d": (second - first) * _INSTANT - scene["gap"]}
 
 
-def system(scene: Scene) -> sf.System:
-    """The carts."""
-    return sliders().at(**_values(scene))
-
-
 def judge(scene: Scene) -> Verdict:
     """Positions before and after the instant, and the momentum of all."""
     m, first = scene["m"], np.array(scene["speeds"])
@@ -87,6 +82,6 @@ ATTACK = Attack(
     "a constraint that engages without a note takes speeds onto itself and moves no body",
     "momentum, and the positions of free motion",
     _scenes,
-    system,
+    lambda scene: sliders().at(**_values(scene)),
     judge,
 )

@@ -68,11 +68,6 @@ def _levels(scene: Scene) -> tuple[float, float]:
     return scene["level"] * top, min(scene["level"] + 0.01, 0.9995) * top
 
 
-def system(scene: Scene) -> sf.System:
-    """The mass of this motion."""
-    return slide().at(**_values(scene))
-
-
 def position(motion: str, t: Array) -> Array:
     """z(t) in closed form."""
     if motion == "swinging":
@@ -150,6 +145,6 @@ ATTACK = Attack(
     "a run without a note finds every crossing of an event once, and ends at the first terminal one",
     "zeros of the motion in closed form",
     _scenes,
-    system,
+    lambda scene: slide().at(**_values(scene)),
     judge,
 )

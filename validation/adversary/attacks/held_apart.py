@@ -39,11 +39,6 @@ _scenes = st.fixed_dictionaries(
 )
 
 
-def system(scene: Scene) -> sf.System:
-    """The bodies."""
-    return welded().system
-
-
 def judge(scene: Scene) -> Verdict:
     """Whatever is answered from a relative turn that is none keeps it at none."""
     model = welded().model
@@ -86,6 +81,6 @@ ATTACK = Attack(
     "what is answered without a note keeps welded bodies in one another's axes",
     "the angle between their quaternions",
     _scenes,
-    system,
+    lambda _: welded().system,
     judge,
 )

@@ -66,11 +66,6 @@ _scenes = st.fixed_dictionaries(
 )
 
 
-def system(scene: Scene) -> sf.System:
-    """The arm at this size."""
-    return arm().at(L=scene["L"])
-
-
 def judge(scene: Scene) -> Verdict:
     """The solution's pose by Pinocchio, its limits."""
     model, par = arm().model, arm().par(L=scene["L"])
@@ -81,7 +76,7 @@ def judge(scene: Scene) -> Verdict:
     at = sf.inverse_kinematics(model, {"tool": target}, scene["guess"], rest=rest, par=par)
     if not at.converged or at.notes:
         return refused(f"not converged: an error of {at.error:.3g}")
-    engine = pinocchio.build(Subject("arm", system(scene), ("tool",)))
+    engine = pinocchio.build(Subject("arm", arm().at(L=scene["L"]), ("tool",)))
     if isinstance(engine, Unsupported):
         return undecided(engine.reason)
     q, none = at.q[np.newaxis], np.zeros((1, 6))
@@ -110,6 +105,6 @@ ATTACK = Attack(
     "a configuration that converged puts the frame where it is wanted, within the limits",
     "Pinocchio's poses",
     _scenes,
-    system,
+    lambda scene: arm().at(L=scene["L"]),
     judge,
 )

@@ -67,18 +67,9 @@ _scenes = st.fixed_dictionaries(
 )
 
 
-def _values(scene: Scene) -> dict[str, float]:
-    return {"L": scene["L"], "a": scene["a"], "m": scene["m"]}
-
-
-def system(scene: Scene) -> sf.System:
-    """The loop at this size."""
-    return four_bar().at(**_values(scene))
-
-
 def judge(scene: Scene) -> Verdict:
     """A run with an interval of output: records on the loop, from which one can go on; energy; a finer run."""
-    model, par, L = four_bar().model, four_bar().par(**_values(scene)), scene["L"]
+    model, par, L = four_bar().model, four_bar().par(**scene), scene["L"]
     unit = float(np.sqrt(L / 9.81))
     angle, speed = scene["angle"], scene["speed"] / unit
     guess = np.array([angle, -angle + 0.3, 1.2 * angle])
@@ -109,6 +100,6 @@ ATTACK = Attack(
     "a run without a note keeps its loops in every record, its energy, and errs by less than three tenths",
     "the constraint at the records, energy, the eighth-order method at 1e-10",
     _scenes,
-    system,
+    lambda scene: four_bar().at(**scene),
     judge,
 )

@@ -72,11 +72,6 @@ _scenes = st.fixed_dictionaries(
 )
 
 
-def system(scene: Scene) -> sf.System:
-    """The linkage."""
-    return bennett().system
-
-
 def judge(scene: Scene) -> Verdict:
     """The first angle at the end against that of one freedom, whose energy is constant."""
     model = bennett().model
@@ -107,6 +102,6 @@ ATTACK = Attack(
     "right it says nothing",
     "its one freedom in closed form, at constant energy",
     _scenes,
-    system,
+    lambda _: bennett().system,
     judge,
 )

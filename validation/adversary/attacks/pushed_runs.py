@@ -68,11 +68,6 @@ def _mechanism(scene: Scene) -> Mechanism:
     return cart(scene["push"] == "hill")
 
 
-def system(scene: Scene) -> sf.System:
-    """The cart, and the hill if there is one."""
-    return _mechanism(scene).at(**_values(scene))
-
-
 def _law(scene: Scene) -> Any:
     """The push: an impulse of m, in any shape."""
     begin, length = _pulse(scene)
@@ -131,6 +126,6 @@ ATTACK = Attack(
     "that is right has no note",
     "the impulse and its moment, and the energy before a hill that is too high",
     _scenes,
-    system,
+    lambda scene: _mechanism(scene).at(**_values(scene)),
     judge,
 )

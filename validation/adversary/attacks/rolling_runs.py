@@ -41,18 +41,9 @@ _scenes = st.fixed_dictionaries(
 )
 
 
-def _values(scene: Scene) -> dict[str, float]:
-    return {"r": scene["r"], "m": scene["m"]}
-
-
-def system(scene: Scene) -> sf.System:
-    """The disc at this size."""
-    return disc().at(**_values(scene))
-
-
 def judge(scene: Scene) -> Verdict:
     """A run from a rolling start."""
-    model, par, r = disc().model, disc().par(**_values(scene)), scene["r"]
+    model, par, r = disc().model, disc().par(**scene), scene["r"]
     unit, tilt = float(np.sqrt(r / 9.81)), scene["tilt"]
     q = np.array([0, 0, r * np.sin(tilt), np.sin(tilt / 2), 0, 0, np.cos(tilt / 2)])
     spin, turn = scene["spin"] / unit, scene["turn"] / unit
@@ -71,6 +62,6 @@ ATTACK = Attack(
     "a run without a note keeps its energy and errs by less than three tenths",
     "energy, the eighth-order method at 1e-10",
     _scenes,
-    system,
+    lambda scene: disc().at(**scene),
     judge,
 )

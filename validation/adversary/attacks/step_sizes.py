@@ -87,11 +87,6 @@ def _mechanism(scene: Scene) -> Mechanism:
     return masses() if scene["mechanism"] == "masses" else pendulum()
 
 
-def system(scene: Scene) -> sf.System:
-    """The mechanism at these sizes."""
-    return _mechanism(scene).at(**_values(scene))
-
-
 def judge(scene: Scene) -> Verdict:
     """A run of fixed steps."""
     one, values = _mechanism(scene), _values(scene)
@@ -123,6 +118,6 @@ ATTACK = Attack(
     "a run of fixed steps without a note errs by less than three tenths",
     "the matrix exponential of linear motions; the eighth-order method at 1e-10 of others",
     _scenes,
-    system,
+    lambda scene: _mechanism(scene).at(**_values(scene)),
     judge,
 )
