@@ -13,6 +13,7 @@ Exudyn's default of 1e-10 N: below the floor Exudyn bisects steps in silence, a 
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from typing import Any, NamedTuple
 
@@ -21,36 +22,37 @@ import numpy as np
 from exudyn import itemInterface as items
 
 from ...mechanics.geometry import Array
-from .system import assembled
+from .system import assembled, new_system, silent_settings, weigh
 
 # Of forces, as a multiple of the axial stiffness that makes them round off.
 _ROUNDING = 1e-13
 _METHOD = exudyn.DynamicSolverType.GeneralizedAlpha
 
 
-class Hub(NamedTuple):
-    """The spin-up of Kane, Ryan & Banerjee (1987): a cantilever on the axis of a hub with a prescribed turn.
+class SlenderBeam(NamedTuple):
+    """A cantilever on the axis of a hub that spins up, by default that of Kane, Ryan & Banerjee (1987).
 
     Attributes:
         length: Length [m].
         EI: Bending stiffness [N m^2].
+        EA: Axial stiffness [N], where it is the beam's own.
         rhoA: Mass per length [kg/m].
         duration: Duration of the spin-up [s].
-        rate: After it [rad/s].
+        rate: Rate at its end [rad/s].
     """
 
     length: float = 8.0
     EI: float = 566.7095928
+    EA: float = math.nan
     rhoA: float = 0.20187837656
     duration: float = 15.0
     rate: float = 6.0
 
-    def angle(self, t: float) -> float:
-        """The hub's angle: its second rate is rate/duration (1 - cos(2 pi t/duration))."""
-        if t >= self.duration:
-            return self.rate * (t - self.duration / 2.0)
+    def angle(self, t: Array | float) -> Array:
+        """The hub's angle at times: its second rate is rate/duration (1 - cos(2 pi t/duration)) up to the duration."""
         k = 2.0 * np.pi / self.duration
-        return float(self.rate / self.duration * (t**2 / 2.0 + (np.cos(k * t) - 1.0) / k**2))
+        before = self.rate / self.duration * (np.square(t) / 2.0 + (np.cos(k * t) - 1.0) / k**2)
+        return np.where(t >= self.duration, self.rate * (t - self.duration / 2.0), before)
 
 
 class Strip(NamedTuple):
@@ -134,13 +136,11 @@ def motion_of_node(
 def motion_at(system: Any, sensor: int, tolerance: float, end: float, step: float) -> tuple[Array, Array]:
     """The same of a sensor; arguments and what is returned as of `motion_of_node`."""
     system.Assemble()
-    settings: Any = exudyn.SimulationSettings()
+    settings = silent_settings()
     settings.timeIntegration.numberOfSteps, settings.timeIntegration.endTime = round(end / step), end
     settings.timeIntegration.generalizedAlpha.spectralRadius = 0.9
     settings.timeIntegration.newton.useModifiedNewton = True
     settings.timeIntegration.newton.absoluteTolerance = tolerance
-    settings.timeIntegration.verboseMode = 0
-    settings.solution.file.write, settings.solution.file.name = False, ""
     settings.solution.sensors.writePeriod = step
     if not system.SolveDynamic(settings, solverType=_METHOD):
         raise RuntimeError(f"Exudyn did not finish the motion with steps of {step} s")
@@ -161,10 +161,9 @@ def static_tip(length: float, EI: float, EA: float, force: tuple[float, float], 
     Raises:
         RuntimeError: Exudyn's solver gave up.
     """
-    container = exudyn.SystemContainer()
-    system = container.AddSystem()
+    container, system = new_system()
     nodes = straight_beam(system, length, EI, EA, 1.0, elements)
-    _hold(system, nodes[0], (0, 1, 3))  # Not the slope along x: it stretches.
+    hold(system, nodes[0], (0, 1, 3))  # Not the slope along x: it stretches.
     marker = system.AddMarker(items.MarkerNodePosition(nodeNumber=nodes[-1]))
     system.AddLoad(items.Force(markerNumber=marker, loadVector=[*force, 0.0]))
     _solve_static(system, EA)
@@ -192,8 +191,7 @@ def spinning_frequencies(
     Returns:
         Flap and chord (count,) [rad/s].
     """
-    container = exudyn.SystemContainer()
-    system = container.AddSystem()
+    container, system = new_system()
     h = 1.0 / elements
     reference = np.array([[hub + h * k, 0, 0, 1, 0, 0] for k in range(elements + 1)])
     nodes = [system.AddNode(items.NodePointSlope1(referenceCoordinates=list(row))) for row in reference]
@@ -237,26 +235,19 @@ def spin_up(elements: int = 16, step: float = 2.5e-3, end: float = 20.0, stretch
     Raises:
         RuntimeError: Exudyn's solver gave up.
     """
-    hub = Hub()
+    hub = SlenderBeam()
     EA = stretch * hub.EI / hub.length**2
-    container = exudyn.SystemContainer()
-    system = container.AddSystem()
+    container, system = new_system()
     nodes = straight_beam(system, hub.length, hub.EI, EA, hub.rhoA, elements)
-    ground = system.AddMarker(items.MarkerBodyRigid(bodyNumber=system.AddObject(items.ObjectGround())))
-    root = system.AddMarker(items.MarkerBodyRigid(bodyNumber=0))  # The first element's, where it begins.
-    system.AddObject(
-        items.GenericJoint(
-            markerNumbers=[ground, root],
-            constrainedAxes=[1, 1, 0, 0, 0, 1],
-            offsetUserFunction=lambda mbs, t, number, offsets: [0.0, 0.0, 0.0, 0.0, 0.0, hub.angle(t)],
-        )
+    clamp_first(
+        system, offsetUserFunction=lambda mbs, t, number, offsets: [0.0, 0.0, 0.0, 0.0, 0.0, float(hub.angle(t))]
     )
     try:
         t, tip = motion_of_node(system, nodes[-1], "Position", _ROUNDING * EA, end, step)
     except RuntimeError as error:
         raise RuntimeError(f"no spin-up with {elements} elements and steps of {step} s: {error}") from None
     x, y, _ = tip.T
-    angle = np.array([hub.angle(at) for at in t])
+    angle = hub.angle(t)
     along, across = np.cos(angle) * x + np.sin(angle) * y, np.cos(angle) * y - np.sin(angle) * x
     return t, np.stack([along - hub.length, across], axis=-1)
 
@@ -278,15 +269,13 @@ def swing(force: float, weight: float, end: float, elements: int = 12, step: flo
         RuntimeError: Exudyn's solver gave up.
     """
     EA = 1e5
-    container = exudyn.SystemContainer()
-    system = container.AddSystem()
+    container, system = new_system()
     nodes = straight_beam(system, 1.0, 1.0, EA, 1.0, elements)
-    _hold(system, nodes[0], (0, 1, 3))
+    hold(system, nodes[0], (0, 1, 3))
     marker = system.AddMarker(items.MarkerNodePosition(nodeNumber=nodes[-1]))
     system.AddLoad(items.Force(markerNumber=marker, loadVector=[0.0, force, 0.0]))
     for element in range(elements):
-        mass = system.AddMarker(items.MarkerBodyMass(bodyNumber=element))
-        system.AddLoad(items.LoadMassProportional(markerNumber=mass, loadVector=[0.0, weight, 0.0]))
+        weigh(system, element, (0.0, weight, 0.0))
     t, tip = motion_of_node(system, nodes[-1], "Position", _ROUNDING * EA, end, step)
     return t, tip[:, :2] - (1.0, 0.0)
 
@@ -307,25 +296,36 @@ def princeton(load: float, angle: float, elements: int = 32, strip: Strip | None
         RuntimeError: Exudyn's solver gave up.
     """
     strip = strip or Strip()
-    container = exudyn.SystemContainer()
-    system = container.AddSystem()
+    container, system = new_system()
     h = strip.length / elements
     section = exudyn.BeamSection()
     section.stiffnessMatrix = np.diag([strip.EA, strip.GA, strip.GA, strip.GJ, strip.EI_y, strip.EI_z])
-    nodes = [
-        system.AddNode(items.NodeRigidBodyEP(referenceCoordinates=[h * k, 0, 0, 1, 0, 0, 0]))
-        for k in range(elements + 1)
-    ]
-    for ends in zip(nodes, nodes[1:], strict=False):
-        system.AddObject(items.ObjectBeamGeometricallyExact(nodeNumbers=list(ends), length=h, sectionData=section))
+    nodes = exact_beam(system, [[h * k, 0, 0, 1, 0, 0, 0] for k in range(elements + 1)], h, section)
     # Three of the four Euler parameters: their norm holds the fourth.
-    _hold(system, nodes[0], (0, 1, 2, 4, 5, 6))
+    hold(system, nodes[0], (0, 1, 2, 4, 5, 6))
     marker = system.AddMarker(items.MarkerNodeRigid(nodeNumber=nodes[-1]))
     force = [0.0, load * float(np.cos(angle)), load * float(np.sin(angle))]
     system.AddLoad(items.Force(markerNumber=marker, loadVector=force))
     _solve_static(system, strip.EA)
     turn = np.array(system.GetNodeOutput(nodes[-1], exudyn.OutputVariableType.RotationMatrix)).reshape(3, 3)
     return _position(system, nodes[-1]) - (strip.length, 0.0, 0.0), turn
+
+
+def clamp_first(system: Any, **given: Any) -> Any:
+    """Add the joint that holds the beginning of body 0, of a planar beam, on the ground."""
+    ground = system.AddMarker(items.MarkerBodyRigid(bodyNumber=system.AddObject(items.ObjectGround())))
+    root = system.AddMarker(items.MarkerBodyRigid(bodyNumber=0))
+    return system.AddObject(
+        items.GenericJoint(markerNumbers=[ground, root], constrainedAxes=[1, 1, 0, 0, 0, 1], **given)
+    )
+
+
+def exact_beam(system: Any, references: Sequence[Sequence[float]], h: float, section: Any) -> list[Any]:
+    """Add geometrically exact elements of length h between rigid nodes at reference coordinates; the nodes."""
+    nodes = [system.AddNode(items.NodeRigidBodyEP(referenceCoordinates=list(one))) for one in references]
+    for ends in zip(nodes, nodes[1:], strict=False):
+        system.AddObject(items.ObjectBeamGeometricallyExact(nodeNumbers=list(ends), length=h, sectionData=section))
+    return nodes
 
 
 def straight_beam(
@@ -353,7 +353,7 @@ def straight_beam(
     return nodes
 
 
-def _hold(system: Any, node: Any, coordinates: Sequence[int]) -> None:
+def hold(system: Any, node: Any, coordinates: Sequence[int]) -> None:
     """Hold coordinates of a node."""
     ground = system.AddNode(items.NodePointGround())
     fixed = system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
@@ -364,11 +364,9 @@ def _hold(system: Any, node: Any, coordinates: Sequence[int]) -> None:
 
 def _solve_static(system: Any, EA: float) -> None:
     system.Assemble()
-    settings: Any = exudyn.SimulationSettings()
+    settings = silent_settings()
     settings.staticSolver.numberOfLoadSteps = 10
     settings.staticSolver.newton.absoluteTolerance = _ROUNDING * EA
-    settings.staticSolver.verboseMode = 0
-    settings.solution.file.write, settings.solution.file.name = False, ""
     if not system.SolveStatic(settings):
         raise RuntimeError("Exudyn found no state of rest")
 

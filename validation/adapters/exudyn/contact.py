@@ -11,6 +11,7 @@ import numpy as np
 from exudyn.utilities import RigidBodyInertia
 
 from ...mechanics.touching_body import GRAVITY, Pose, TouchingBody
+from .system import new_system, silent_settings
 
 # Half the length of the plane's two triangles [m].
 _FAR = 1e3
@@ -38,8 +39,7 @@ def slid(
         h: Step [s].
         times: Times, ascending [s].
     """
-    container: Any = exudyn.SystemContainer()
-    system: Any = container.AddSystem()
+    container, system = new_system()
     node = system.AddNode(items.NodePoint(referenceCoordinates=[0.0, 0.0, radius]))
     system.AddObject(items.ObjectMassPoint(mass=1.0, nodeNumber=node))
     middle = system.AddMarker(items.MarkerNodePosition(nodeNumber=node))
@@ -59,8 +59,7 @@ def slid(
 
 def moved(body: TouchingBody, h: float) -> Pose:
     """Pose of a body of balls at the end, by steps of h: rigid ones by penalties that they just resolve."""
-    container: Any = exudyn.SystemContainer()
-    system: Any = container.AddSystem()
+    container, system = new_system()
     number = system.CreateRigidBody(
         inertia=RigidBodyInertia(mass=body.mass, inertiaTensor=np.diag(body.moments)),
         referencePosition=list(body.p),
@@ -102,9 +101,7 @@ def _move(system: Any, begun: float, end: float, h: float) -> None:
     if begun > 0.0:
         data.SetODE2Coordinates(data.GetODE2Coordinates(), configuration=initial)
         data.SetODE2Coordinates_t(data.GetODE2Coordinates_t(), configuration=initial)
-    settings: Any = exudyn.SimulationSettings()
-    settings.solution.file.write, settings.solution.file.name = False, ""
-    settings.timeIntegration.verboseMode = 0
+    settings = silent_settings()
     settings.timeIntegration.startTime, settings.timeIntegration.endTime = begun, end
     settings.timeIntegration.numberOfSteps = round((end - begun) / h)
     system.SolveDynamic(settings)

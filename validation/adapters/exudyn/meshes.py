@@ -21,7 +21,7 @@ from ...mechanics.elastic import POINTS, ElasticBeam
 from ...mechanics.geometry import Array
 from ...mechanics.quadrature import gauss_stations
 from ...mechanics.rod import StrainRod
-from .system import ExudynSystem, assembled
+from .system import ExudynSystem, assembled, new_system, weigh
 
 _NO_TURN = (1.0, 0.0, 0.0, 0.0)
 
@@ -90,8 +90,7 @@ def _average(beam: ElasticBeam | StrainRod, name: str, a: float, b: float) -> fl
 
 
 def _cables(beam: ElasticBeam | StrainRod, x: Array, EI: Array, gravity: Array) -> ExudynSystem:
-    container = exudyn.SystemContainer()
-    system: Any = container.AddSystem()
+    container, system = new_system()
     nodes = [system.AddNode(items.NodePointSlope1(referenceCoordinates=[at, 0, 0, 1, 0, 0])) for at in x]
     for k, rhoA in enumerate(_averages(beam, "rhoA", x)):
         cable = items.ObjectANCFCable(
@@ -101,8 +100,7 @@ def _cables(beam: ElasticBeam | StrainRod, x: Array, EI: Array, gravity: Array) 
             axialStiffness=0.0,
             nodeNumbers=nodes[k : k + 2],
         )
-        marker = system.AddMarker(items.MarkerBodyMass(bodyNumber=system.AddObject(cable)))
-        system.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=list(gravity)))
+        weigh(system, system.AddObject(cable), gravity)
     return assembled(container, system)
 
 
@@ -114,8 +112,7 @@ def _rotating(x: Array, inertia: Sequence[Array], stiffness: Sequence[Array]) ->
         inertia: About x, y, z, of each element.
         stiffness: Against stretch, shear along y and z, twist, bending about y and z, of each element.
     """
-    container = exudyn.SystemContainer()
-    system: Any = container.AddSystem()
+    container, system = new_system()
     nodes = [system.AddNode(items.NodeRigidBodyEP(referenceCoordinates=[at, 0, 0, *_NO_TURN])) for at in x]
     for k in range(len(x) - 1):
         section: Any = exudyn.BeamSection()

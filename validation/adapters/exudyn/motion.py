@@ -10,6 +10,7 @@ import exudyn.itemInterface as items
 import numpy as np
 
 from ...mechanics.geometry import Array
+from .system import new_system, silent_settings, weigh
 
 Link = tuple[tuple[float, float], float, float]
 
@@ -35,12 +36,12 @@ def bars(
     Returns:
         (n, 2) [m], or None where the solver gave up.
     """
-    container, system, marked = linkage(links, hinges, grounded)
-    settings: Any = exudyn.SimulationSettings()
-    settings.solution.file.write, settings.solution.file.name = False, ""
+    container, system = new_system()
+    marked = add_bars(system, links, hinges, grounded)
+    system.Assemble()
+    settings = silent_settings()
     settings.timeIntegration.numberOfSteps = round(t_end / h)
     settings.timeIntegration.endTime = t_end
-    settings.timeIntegration.verboseMode = 0
     settings.timeIntegration.generalizedAlpha.spectralRadius = spectral_radius
     # On positions: on speeds alone the row of four-bars drifts off, and takes up to 300 times longer.
     settings.timeIntegration.generalizedAlpha.useIndex2Constraints = False
@@ -55,12 +56,10 @@ def bars(
     return np.array(ends)[:, :2]
 
 
-def linkage(
-    links: Sequence[Link], hinges: Sequence[tuple[int, float, int, float]], grounded: Sequence[int]
-) -> tuple[Any, Any, dict[tuple[int, float], Any]]:
-    """The bars of `bars`, assembled: container, system, and the markers of their ends by (bar, station)."""
-    container: Any = exudyn.SystemContainer()
-    system: Any = container.AddSystem()
+def add_bars(
+    system: Any, links: Sequence[Link], hinges: Sequence[tuple[int, float, int, float]], grounded: Sequence[int]
+) -> dict[tuple[int, float], Any]:
+    """Add the bars of `bars` to a system; the markers of their ends by (bar, station)."""
     ground = system.AddObject(items.ObjectGround())
     marked: dict[tuple[int, float], Any] = {}
     nodes = []
@@ -79,16 +78,14 @@ def linkage(
             marked[len(nodes) - 1, station] = system.AddMarker(
                 items.MarkerBodyRigid(bodyNumber=body, localPosition=[station - 0.5, 0, 0])
             )
-        middle = system.AddMarker(items.MarkerBodyMass(bodyNumber=body))
-        system.AddLoad(items.LoadMassProportional(markerNumber=middle, loadVector=[0, -9.81, 0]))
+        weigh(system, body, (0, -9.81, 0))
     for i in grounded:
         (x, z), _, _ = links[i]
         pivot = system.AddMarker(items.MarkerBodyRigid(bodyNumber=ground, localPosition=[x, z, 0]))
         system.AddObject(items.RevoluteJoint2D(markerNumbers=[pivot, marked[i, 0.0]]))
     for one, at, other, there in hinges:
         system.AddObject(items.RevoluteJoint2D(markerNumbers=[marked[one, at], marked[other, there]]))
-    system.Assemble()
-    return container, system, marked
+    return marked
 
 
 def _velocity(at: tuple[float, float], half: Array, angle: float, speed: float, links: Sequence[Link]) -> Array:

@@ -16,7 +16,8 @@ import numpy as np
 from exudyn import itemInterface as items
 
 from ...mechanics.geometry import Array
-from .ancf import motion_at, motion_of_node
+from .ancf import exact_beam, motion_at, motion_of_node
+from .system import new_system
 
 # Absolute tolerance of Newton's method.
 _TOLERANCE = 1e-9
@@ -67,8 +68,7 @@ def motion(robot: Robot, elements: int, step: float, end: float) -> tuple[Array,
     Raises:
         RuntimeError: Exudyn's solver gave up.
     """
-    container = exudyn.SystemContainer()
-    system: Any = container.AddSystem()
+    container, system = new_system()
     first, second = (_rod(system, robot, root, elements) for root in ((0.0, 0.0, 0.0), robot.foot))
     moments = [robot.moment] * 3 + [0.0] * 3
     platform = system.AddObject(items.ObjectRigidBody(mass=robot.mass, inertia=moments, nodeNumber=first))
@@ -80,15 +80,13 @@ def motion(robot: Robot, elements: int, step: float, end: float) -> tuple[Array,
 
 def cantilever(robot: Robot, elements: int, step: float, end: float) -> tuple[Array, Array]:
     """The first rod alone, without platform, pushed from rest; arguments and what is returned as of `motion`."""
-    container = exudyn.SystemContainer()
-    system: Any = container.AddSystem()
+    container, system = new_system()
     return _pushed(system, _rod(system, robot, (0.0, 0.0, 0.0), elements), robot, step, end)
 
 
 def flying(robot: Robot, elements: int, step: float, end: float) -> tuple[Array, Array]:
     """The first rod alone, held nowhere, pushed at its tip from rest; arguments and what is returned as of `motion`."""
-    container = exudyn.SystemContainer()
-    system: Any = container.AddSystem()
+    container, system = new_system()
     return _pushed(system, _elements(system, robot, (0.0, 0.0, 0.0), elements)[-1], robot, step, end)
 
 
@@ -147,13 +145,7 @@ def _elements(system: Any, robot: Robot, root: tuple[float, float, float], eleme
     section.stiffnessMatrix = np.diag(robot.stiffness)
     h, (x, y, z), (c_y, c_z) = 1.0 / elements, root, robot.center
     turned = np.cos(robot.turn / 2), np.sin(robot.turn / 2), 0.0, 0.0
-    nodes = [
-        system.AddNode(items.NodeRigidBodyEP(referenceCoordinates=[x + h * k, y + c_y, z + c_z, *turned]))
-        for k in range(elements + 1)
-    ]
-    for ends in zip(nodes, nodes[1:], strict=False):
-        system.AddObject(items.ObjectBeamGeometricallyExact(nodeNumbers=list(ends), length=h, sectionData=section))
-    return nodes
+    return exact_beam(system, [[x + h * k, y + c_y, z + c_z, *turned] for k in range(elements + 1)], h, section)
 
 
 def _push(system: Any, marker: Any, force: Callable[[Any, float, Any], list[float]]) -> None:

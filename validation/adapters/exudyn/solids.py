@@ -14,7 +14,7 @@ from ...contract.conventions import times, xyzw_to_wxyz
 from ...mechanics.assembly import BASE, Assembly, FrameSite
 from ...mechanics.carried import Carried
 from ...mechanics.geometry import Array, matrix_quaternion
-from .system import ExudynSystem, assembled
+from .system import ExudynSystem, assembled, new_system, weigh
 
 NO_TURN = (1.0, 0.0, 0.0, 0.0)
 # Coordinates of a node: a place and Euler parameters.
@@ -167,8 +167,7 @@ class Solids:
 
 def solids(assembly: Assembly) -> Solids:
     """Exudyn's rigid bodies of a description."""
-    container = exudyn.SystemContainer()
-    system: Any = container.AddSystem()
+    container, system = new_system()
     numbers = []
     for mover in assembly.movers:
         merged = mover.merged()
@@ -179,6 +178,5 @@ def solids(assembly: Assembly) -> Solids:
         body = items.ObjectRigidBody(mass=merged.mass, inertia=moments, centerOfMass=list(p), nodeNumber=node)
         numbers.append(system.AddObject(body))
         if merged.mass:
-            marker = system.AddMarker(items.MarkerBodyMass(bodyNumber=numbers[-1]))
-            system.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=list(assembly.gravity)))
+            weigh(system, numbers[-1], assembly.gravity)
     return Solids(assembled(container, system), tuple(numbers), assembly)

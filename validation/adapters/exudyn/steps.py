@@ -16,6 +16,7 @@ import exudyn
 import numpy as np
 
 from ...mechanics.geometry import Array
+from .system import new_system, silent_settings
 
 EXPLICIT = ("ExplicitEuler", "ExplicitMidpoint", "RK33", "RK44", "RK67", "ODE23", "DOPRI5", "VelocityVerlet")
 # Of a step that is cut.
@@ -60,11 +61,10 @@ class Solver:
 
     def settings(self, step: float, end: float, output: float) -> Any:
         """Exudyn's settings for a run."""
-        made: Any = exudyn.SimulationSettings()
-        made.solution.file.write, made.solution.file.name = False, ""
+        made = silent_settings()
         made.solution.sensors.writePeriod = output
         timed = made.timeIntegration
-        timed.numberOfSteps, timed.endTime, timed.verboseMode = round(end / step), end, 0
+        timed.numberOfSteps, timed.endTime = round(end / step), end
         timed.solverType = getattr(exudyn.DynamicSolverType, self.kind)
         timed.adaptiveStep, timed.minimumStepSize = self.bisecting, step / _PARTS
         timed.automaticStepSize = self.kind in ADAPTIVE
@@ -103,14 +103,16 @@ class Timed:
     """A system that can be built again for each run.
 
     Attributes:
-        build: -> container, assembled system, sensors.
+        build: Fills a system, and gives its sensors.
     """
 
-    build: Callable[[], tuple[Any, Any, Sequence[Any]]]
+    build: Callable[[Any], Sequence[Any]]
 
     def run(self, solver: Solver, step: float, end: float, output: float) -> Recorded:
         """Step a fresh system to its end, recording at an interval that is a multiple of the step."""
-        container, system, sensors = self.build()
+        container, system = new_system()
+        sensors = self.build(system)
+        system.Assemble()
         settings = solver.settings(step, end, output)
         explicit = solver.kind in EXPLICIT
         made: Any = exudyn.MainSolverExplicit() if explicit else exudyn.MainSolverImplicitSecondOrder()

@@ -2,15 +2,37 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
 from dataclasses import dataclass
 from typing import Any
 
 import exudyn
 import numpy as np
+from exudyn import itemInterface as items
 
 from ...mechanics.geometry import Array
 
 VERSION: str = exudyn.__version__
+
+
+def new_system() -> tuple[Any, Any]:
+    """A container, which owns its system and must outlive it, and that system."""
+    container = exudyn.SystemContainer()
+    return container, container.AddSystem()
+
+
+def silent_settings() -> Any:
+    """Settings of solvers that write no file and say nothing."""
+    settings: Any = exudyn.SimulationSettings()
+    settings.solution.file.write, settings.solution.file.name = False, ""
+    settings.timeIntegration.verboseMode = settings.staticSolver.verboseMode = 0
+    return settings
+
+
+def weigh(system: Any, body: Any, acceleration: Iterable[float]) -> None:
+    """Load a body by its weight at an acceleration of gravity (3)."""
+    marker = system.AddMarker(items.MarkerBodyMass(bodyNumber=body))
+    system.AddLoad(items.LoadMassProportional(markerNumber=marker, loadVector=list(acceleration)))
 
 
 @dataclass(frozen=True)
@@ -51,8 +73,7 @@ class ExudynSystem:
 def assembled(container: Any, system: Any) -> ExudynSystem:
     """A container's system that has all its nodes and objects, ready to be evaluated."""
     system.Assemble()
-    settings: Any = exudyn.SimulationSettings()
-    settings.solution.file.write, settings.solution.file.name = False, ""
+    settings = silent_settings()
     # What has no inertia in some direction is no obstacle: nothing is solved for here.
     settings.timeIntegration.generalizedAlpha.computeInitialAccelerations = False
     solver: Any = exudyn.MainSolverImplicitSecondOrder()

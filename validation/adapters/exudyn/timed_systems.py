@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass
 from typing import Any
 
 import exudyn
@@ -16,10 +15,11 @@ import symofros as sf
 
 from ...mechanics.assembly import BASE, anchor_name, assemble
 from ...mechanics.geometry import Array
-from .ancf import node_sensor, straight_beam
-from .motion import Link, linkage
+from .ancf import SlenderBeam, clamp_first, hold, node_sensor, straight_beam
+from .motion import Link, add_bars
 from .planar import Cable, populate
 from .steps import Timed
+from .system import weigh
 
 # What its stubs state wrongly, or not at all.
 _ENGINE: Any = exudyn
@@ -32,32 +32,6 @@ _HINGES = {
 _FIRST_BAR = 1
 
 
-@dataclass(frozen=True)
-class SlenderBeam:
-    """A cantilever on the axis of a hub that spins up.
-
-    Attributes:
-        length: Length [m].
-        EI: Bending stiffness [N m^2].
-        EA: Axial stiffness [N].
-        rhoA: Mass per length [kg/m].
-        duration: Duration of the spin-up [s].
-        rate: Rate at its end [rad/s].
-    """
-
-    length: float
-    EI: float
-    EA: float
-    rhoA: float
-    duration: float
-    rate: float
-
-    def angle(self, t: Array) -> Array:
-        """The hub's at times within the spin-up: its second rate is rate/duration (1 - cos(2 pi t/duration))."""
-        k = 2.0 * np.pi / self.duration
-        return np.asarray(self.rate / self.duration * (t**2 / 2.0 + (np.cos(k * t) - 1.0) / k**2))
-
-
 def spinning(rod: SlenderBeam, elements: int) -> Timed:
     """The rod of ANCFCable2D elements on a driven hub, with the position of its tip as sensor.
 
@@ -65,13 +39,9 @@ def spinning(rod: SlenderBeam, elements: int) -> Timed:
     a run of four elements a fifth slower. Its joints with such offsets have no form of index 2.
     """
 
-    def build() -> tuple[Any, Any, Sequence[Any]]:
-        container = exudyn.SystemContainer()
-        system = container.AddSystem()
+    def build(system: Any) -> Sequence[Any]:
         nodes = straight_beam(system, rod.length, rod.EI, rod.EA, rod.rhoA, elements)
-        ground = system.AddMarker(items.MarkerBodyRigid(bodyNumber=system.AddObject(items.ObjectGround())))
-        root = system.AddMarker(items.MarkerBodyRigid(bodyNumber=0))  # The first element's, where it begins.
-        joint = system.AddObject(items.GenericJoint(markerNumbers=[ground, root], constrainedAxes=[1, 1, 0, 0, 0, 1]))
+        joint = clamp_first(system)
         k, share = 2.0 * math.pi / rod.duration, rod.rate / rod.duration
         symbolic = _ENGINE.symbolic
 
@@ -80,9 +50,7 @@ def spinning(rod: SlenderBeam, elements: int) -> Timed:
 
         made = CreateSymbolicUserFunction(system, offset, "offsetUserFunction", joint)
         system.SetObjectParameter(joint, "offsetUserFunction", made)
-        sensor = node_sensor(system, nodes[-1], "Position")
-        system.Assemble()
-        return container, system, [sensor]
+        return [node_sensor(system, nodes[-1], "Position")]
 
     return Timed(build)
 
@@ -97,21 +65,12 @@ def swinging_rod(rod: SlenderBeam, gravity: float, damping: float, elements: int
         elements: Number of elements.
     """
 
-    def build() -> tuple[Any, Any, Sequence[Any]]:
-        container = exudyn.SystemContainer()
-        system = container.AddSystem()
+    def build(system: Any) -> Sequence[Any]:
         nodes = straight_beam(system, rod.length, rod.EI, rod.EA, rod.rhoA, elements, damping * rod.EI)
-        ground = system.AddNode(items.NodePointGround())
-        fixed = system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=ground, coordinate=0))
-        for coordinate in (0, 1):
-            marker = system.AddMarker(items.MarkerNodeCoordinate(nodeNumber=nodes[0], coordinate=coordinate))
-            system.AddObject(items.CoordinateConstraint(markerNumbers=[fixed, marker]))
+        hold(system, nodes[0], (0, 1))
         for element in range(elements):
-            mass = system.AddMarker(items.MarkerBodyMass(bodyNumber=element))
-            system.AddLoad(items.LoadMassProportional(markerNumber=mass, loadVector=[0.0, -gravity, 0.0]))
-        sensor = node_sensor(system, nodes[-1], "Position")
-        system.Assemble()
-        return container, system, [sensor]
+            weigh(system, element, (0.0, -gravity, 0.0))
+        return [node_sensor(system, nodes[-1], "Position")]
 
     return Timed(build)
 
@@ -141,13 +100,9 @@ def planar(
         place: Place of the point in the frame of the last joint [m].
     """
 
-    def build() -> tuple[Any, Any, Sequence[Any]]:
-        container = exudyn.SystemContainer()
-        made = container.AddSystem()
+    def build(made: Any) -> Sequence[Any]:
         last = populate(made, system, angles, cables)[-1].displaced(np.array(place))
-        sensor = _position_sensor(made, last.body, last.place())
-        made.Assemble()
-        return container, made, [sensor]
+        return [_position_sensor(made, last.body, last.place())]
 
     return Timed(build)
 
@@ -155,46 +110,58 @@ def planar(
 def pendulum(gravity: float) -> Timed:
     """A point of 1 kg at 1 m on a hinge about y, from the horizontal, in one coordinate: Exudyn's kinematic tree."""
 
-    def build() -> tuple[Any, Any, Sequence[Any]]:
-        container = exudyn.SystemContainer()
-        made = container.AddSystem()
-        node = made.AddNode(
-            items.NodeGenericODE2(
-                referenceCoordinates=[0.0],
-                initialCoordinates=[0.0],
-                initialCoordinates_t=[0.0],
-                numberOfODE2Coordinates=1,
-            )
-        )
-        made.AddObject(
-            items.ObjectKinematicTree(
-                nodeNumber=node,
-                jointTypes=[exudyn.JointType.RevoluteY],
-                linkParents=[-1],
-                jointTransformations=_ENGINE.Matrix3DList([np.eye(3)]),
-                jointOffsets=_ENGINE.Vector3DList([[0, 0, 0]]),
-                linkInertiasCOM=_ENGINE.Matrix3DList([np.zeros((3, 3))]),
-                linkCOMs=_ENGINE.Vector3DList([[1, 0, 0]]),
-                linkMasses=[1.0],
-                baseOffset=[0, 0, 0],
-                gravity=[0, 0, -gravity],
-            )
-        )
-        sensor = node_sensor(made, node, "Coordinates")
-        made.Assemble()
-        return container, made, [sensor]
+    def build(made: Any) -> Sequence[Any]:
+        links = [(-1, np.eye(3), np.zeros(3), 1.0, np.array([1.0, 0.0, 0.0]), np.zeros((3, 3)))]
+        return [_kinematic_tree(made, [exudyn.JointType.RevoluteY], links, [0.0], [0, 0, -gravity])]
 
     return Timed(build)
+
+
+def _kinematic_tree(
+    made: Any,
+    axes: Sequence[Any],
+    links: Sequence[tuple[int, Array, Array, float, Array, Array]],
+    start: Sequence[float],
+    gravity: Sequence[float],
+    **control: Any,
+) -> Any:
+    """Add a tree that is at rest at the start; the sensor of its coordinates.
+
+    Args:
+        made: The system.
+        axes: Exudyn's types of its joints.
+        links: Parent, R and p of the joint in it, mass, its centre and moments about that, of each link.
+        start: Coordinates.
+        gravity: Acceleration of gravity (3).
+        control: What else the object is given.
+    """
+    n, (parents, R, p, masses, centres, moments) = len(axes), zip(*links, strict=True)
+    given = {"referenceCoordinates": [0.0] * n, "initialCoordinates": start, "initialCoordinates_t": [0.0] * n}
+    node = made.AddNode(items.NodeGenericODE2(**given, numberOfODE2Coordinates=n))
+    made.AddObject(
+        items.ObjectKinematicTree(
+            nodeNumber=node,
+            jointTypes=axes,
+            linkParents=list(parents),
+            jointTransformations=_ENGINE.Matrix3DList(list(R)),
+            jointOffsets=_ENGINE.Vector3DList(list(p)),
+            linkInertiasCOM=_ENGINE.Matrix3DList(list(moments)),
+            linkCOMs=_ENGINE.Vector3DList(list(centres)),
+            linkMasses=list(masses),
+            baseOffset=[0, 0, 0],
+            gravity=gravity,
+            **control,
+        )
+    )
+    return node_sensor(made, node, "Coordinates")
 
 
 def bars(links: Sequence[Link], hinges: Sequence[tuple[int, float, int, float]], grounded: Sequence[int]) -> Timed:
     """Bars joined by hinges, as in `validation.adapters.exudyn.motion`, with the first bar's end as sensor."""
 
-    def build() -> tuple[Any, Any, Sequence[Any]]:
-        container, made, _ = linkage(links, hinges, grounded)
-        sensor = _position_sensor(made, _FIRST_BAR, [0.5, 0, 0])
-        made.Assemble()
-        return container, made, [sensor]
+    def build(made: Any) -> Sequence[Any]:
+        add_bars(made, links, hinges, grounded)
+        return [_position_sensor(made, _FIRST_BAR, [0.5, 0, 0])]
 
     return Timed(build)
 
@@ -211,9 +178,7 @@ def looped(system: sf.System, angles: Mapping[str, float], torque: float) -> Tim
     numbers = system.parameter_values()
     closures = [constraint for constraint in system.constraints if isinstance(constraint, sf.Closure)]
 
-    def build() -> tuple[Any, Any, Sequence[Any]]:
-        container = exudyn.SystemContainer()
-        made = container.AddSystem()
+    def build(made: Any) -> Sequence[Any]:
         carriers = populate(made, system, angles, {})
         ground = made.AddObject(items.ObjectGround())
 
@@ -238,8 +203,7 @@ def looped(system: sf.System, angles: Mapping[str, float], torque: float) -> Tim
         driven = made.AddMarker(items.MarkerBodyRigid(bodyNumber=carriers[0].body))
         made.AddLoad(items.LoadTorqueVector(markerNumber=driven, loadVector=[0.0, 0.0, torque]))
         sensors = [node_sensor(made, carrier.node, "Coordinates") for carrier in carriers]
-        made.Assemble()
-        return container, made, sensors
+        return sensors
 
     return Timed(build)
 
@@ -266,41 +230,18 @@ def held(system: sf.System, start: Array, targets: Array, stiffness: float, damp
     """
     assembly = assemble(system)
     n = len(assembly.movers)
-    masses = [mover.merged() for mover in assembly.movers]
+    masses = [(mover, mover.merged()) for mover in assembly.movers]
+    links = [(one.parent, one.X_AP.R, one.X_AP.p, mass.mass, mass.p_BC, mass.J_BC) for one, mass in masses]
     axes = [_HINGES[tuple(np.round(mover.axis, 12).tolist())] for mover in assembly.movers]
 
-    def build() -> tuple[Any, Any, Sequence[Any]]:
-        container = exudyn.SystemContainer()
-        made = container.AddSystem()
-        node = made.AddNode(
-            items.NodeGenericODE2(
-                referenceCoordinates=[0.0] * n,
-                initialCoordinates=start.tolist(),
-                initialCoordinates_t=[0.0] * n,
-                numberOfODE2Coordinates=n,
-            )
-        )
-        made.AddObject(
-            items.ObjectKinematicTree(
-                nodeNumber=node,
-                jointTypes=axes,
-                linkParents=[mover.parent for mover in assembly.movers],
-                jointTransformations=_ENGINE.Matrix3DList([mover.X_AP.R for mover in assembly.movers]),
-                jointOffsets=_ENGINE.Vector3DList([mover.X_AP.p for mover in assembly.movers]),
-                linkInertiasCOM=_ENGINE.Matrix3DList([mass.J_BC for mass in masses]),
-                linkCOMs=_ENGINE.Vector3DList([mass.p_BC for mass in masses]),
-                linkMasses=[m.mass for m in masses],
-                baseOffset=[0, 0, 0],
-                gravity=assembly.gravity.tolist(),
-                jointPControlVector=[stiffness] * n,
-                jointDControlVector=[damping] * n,
-                jointPositionOffsetVector=targets.tolist(),
-                jointVelocityOffsetVector=[0.0] * n,
-            )
-        )
-        sensor = node_sensor(made, node, "Coordinates")
-        made.Assemble()
-        return container, made, [sensor]
+    def build(made: Any) -> Sequence[Any]:
+        control = {
+            "jointPControlVector": [stiffness] * n,
+            "jointDControlVector": [damping] * n,
+            "jointPositionOffsetVector": targets.tolist(),
+            "jointVelocityOffsetVector": [0.0] * n,
+        }
+        return [_kinematic_tree(made, axes, links, start.tolist(), assembly.gravity.tolist(), **control)]
 
     return Timed(build)
 
@@ -311,9 +252,7 @@ def between_walls(stiffness: float, gap: float, speed: float) -> Timed:
     The springs are one of Exudyn's symbolic functions, evaluated in its C++: its stops change once a step.
     """
 
-    def build() -> tuple[Any, Any, Sequence[Any]]:
-        container = exudyn.SystemContainer()
-        system = container.AddSystem()
+    def build(system: Any) -> Sequence[Any]:
         ground = system.AddNode(items.NodePointGround())
         node = system.AddNode(items.Node1D(referenceCoordinates=[0.0], initialVelocities=[speed]))
         system.AddObject(items.Mass1D(mass=1.0, nodeNumber=node))
@@ -328,8 +267,6 @@ def between_walls(stiffness: float, gap: float, speed: float) -> Timed:
         spring = items.CoordinateSpringDamper(markerNumbers=markers, stiffness=stiffness)
         made = CreateSymbolicUserFunction(system, push, "springForceUserFunction", number := system.AddObject(spring))
         system.SetObjectParameter(number, "springForceUserFunction", made)
-        sensor = node_sensor(system, node, "Coordinates")
-        system.Assemble()
-        return container, system, [sensor]
+        return [node_sensor(system, node, "Coordinates")]
 
     return Timed(build)

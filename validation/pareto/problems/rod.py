@@ -13,7 +13,7 @@ from __future__ import annotations
 
 import numpy as np
 
-from ...adapters.exudyn.timed_systems import SlenderBeam
+from ...adapters.exudyn.ancf import SlenderBeam
 from ...mechanics.geometry import Array
 
 
@@ -38,7 +38,7 @@ def linked(rod: SlenderBeam, times: Array, links: int) -> Array:
     def rate(t: float, y: Array) -> Array:
         a, w = y
         apart = a[:, None] - a[None, :]
-        bent[0], bent[1:-1], bent[-1] = float(rod.angle(np.asarray(t))), a, a[-1]
+        bent[0], bent[1:-1], bent[-1] = float(rod.angle(t)), a, a[-1]
         torque = springs * np.diff(bent)
         force = torque[1:] - torque[:-1] - (mass * np.sin(apart)) @ (w * w)
         return np.array([w, np.linalg.solve(mass * np.cos(apart), force)])

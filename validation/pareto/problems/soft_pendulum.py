@@ -9,8 +9,9 @@ import numpy as np
 
 import symofros as sf
 
+from ...adapters.exudyn.ancf import SlenderBeam
 from ...adapters.exudyn.steps import Solver
-from ...adapters.exudyn.timed_systems import SlenderBeam, swinging_rod
+from ...adapters.exudyn.timed_systems import swinging_rod
 from ...mechanics.geometry import Array
 from ..contestants.exudyn import ExudynModel
 from ..contestants.symofros import SymofrosModel

@@ -10,8 +10,9 @@ import numpy as np
 
 import symofros as sf
 
+from ...adapters.exudyn.ancf import SlenderBeam
 from ...adapters.exudyn.steps import Recorded, Solver
-from ...adapters.exudyn.timed_systems import SlenderBeam, spinning
+from ...adapters.exudyn.timed_systems import spinning
 from ...mechanics.geometry import Array
 from ..contestants.exudyn import ExudynModel
 from ..contestants.symofros import SymofrosModel

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 from validation.accuracy.reference import data
-from validation.adapters.exudyn.ancf import Hub, Strip, princeton, spin_up, spinning_frequencies, static_tip
+from validation.adapters.exudyn.ancf import SlenderBeam, Strip, princeton, spin_up, spinning_frequencies, static_tip
 
 
 @pytest.mark.parametrize("alpha", [0.05, 0.75, 10])
@@ -52,7 +52,7 @@ def test_spin_up_follows_the_exact_rod() -> None:
     chosen = [int(np.abs(t - at).argmin()) for at in rod["t"]]
     error = tip[chosen] - np.stack([rod["tip_x"], rod["tip_y"]], axis=-1)
     assert np.abs(error[:, 1]).max() < 3.5e-4
-    hub = Hub()
+    hub = SlenderBeam()
     stretch = hub.rate**2 * hub.rhoA * hub.length**3 / (3 * 1e6 * hub.EI / hub.length**2)
     assert error[-1, 0] == pytest.approx(stretch, rel=5e-3)
 
