@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Collection, Iterable, Sequence
+from os import PathLike
 from typing import Any
 
 import numpy as np
@@ -72,6 +73,17 @@ def number(
         rule = " and ".join(filter(None, (above, below)))
         raise refuse(name, f"{field} is out of bounds", given, f"{field} is {rule}", "choose a number within")
     return given
+
+
+def path_text(name: str, field: str, path: Any) -> str:
+    """A path as text.
+
+    Raises:
+        DescriptionError: It is none.
+    """
+    if not isinstance(path, (str, PathLike)):
+        raise refuse(name, f"{field} is no path", repr(path), "a path, as text or of pathlib", "state where it lies")
+    return str(path)
 
 
 def whole(name: str, field: str, value: Any, low: int, high: int) -> int:

@@ -212,7 +212,9 @@ def located(problems: Sequence[Problem], where: str) -> list[Problem]:
 
 def _sampling(name: str, block: Block) -> list[Problem]:
     period, offset = block.period, block.offset
-    good = period is None or (math.isfinite(period) and period > 0.0)
+    stated = [np.asarray(value) for value in (period, offset) if value is not None]
+    good = all(value.ndim == 0 and value.dtype.kind in "iuf" for value in stated)
+    good = good and (period is None or (math.isfinite(period) and period > 0.0))
     if not good or not 0.0 <= offset < (period or 1e-300):
         return [
             Problem(

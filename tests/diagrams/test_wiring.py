@@ -152,6 +152,10 @@ class Odd(Counter):
         ([Counter(name="ticks", period=0.1, offset=0.1)], "block 'ticks' has no sample time"),
         ([Counter(name="ticks", period=0.1, offset=-0.05)], "block 'ticks' has no sample time"),
         ([Counter(name="ticks", period=float("nan"))], "block 'ticks' has no sample time"),
+        ([Counter(name="ticks", period="0.1")], "block 'ticks' has no sample time"),  # type: ignore[arg-type]
+        ([Counter(name="ticks", period=[0.1])], "block 'ticks' has no sample time"),  # type: ignore[arg-type]
+        ([Counter(name="ticks", period=True)], "block 'ticks' has no sample time"),
+        ([Counter(name="ticks", period=0.1, offset="0")], "block 'ticks' has no sample time"),  # type: ignore[arg-type]
         ([Counter(name="a", period=0.1), Counter(name="b", period=0.100000001)], "sample times do not fit together"),
         ([Lag(name="lag", period=0.1)], "block 'lag' is sampled and moves between samples"),
         ([Spoken(name="spoken", heard=[])], "block 'spoken' calls Python and has no sample time"),

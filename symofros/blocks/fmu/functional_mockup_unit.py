@@ -12,7 +12,7 @@ from typing import Any, Literal
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.blocks.checks import number, numbers, refuse
+from symofros.blocks.checks import number, numbers, path_text, refuse
 from symofros.blocks.fmu import fmu_worker
 from symofros.blocks.fmu.unit_description import UnitDescription, UnitPort, known, unit_description, unit_ports
 from symofros.blocks.generic.sampling import needs_period
@@ -56,7 +56,8 @@ class FMU(ExternalBlock):
     allow_native: bool | str = False
 
     def __post_init__(self) -> None:
-        """Numbers that can be, and a sample time."""
+        """A path as text, numbers that can be, and a sample time."""
+        object.__setattr__(self, "file", path_text(self.name, "file", self.file))
         number(self.name, "rtol", self.rtol, 0.0, 1.0, exclusive=True)
         number(self.name, "timeout", self.timeout, 0.0, exclusive=True)
         for variable, values in dict(self.start or {}).items():

@@ -13,7 +13,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.blocks.checks import choice, increasing, known_name, numbers, refuse
+from symofros.blocks.checks import choice, increasing, known_name, numbers, path_text, refuse
 from symofros.diagrams.block import Block, Environment, Port, Ports
 from symofros.errors import DescriptionError, Problem
 from symofros.simulation.inputs import Signal
@@ -53,6 +53,7 @@ class Sequence(Block):
 
     def __post_init__(self) -> None:
         """Samples at increasing times."""
+        object.__setattr__(self, "file", path_text(self.name, "file", self.file))
         choice(self.name, "kind", self.kind, ("linear", "hold"))
         if bool(self.file) == (self.values is not None):
             raise refuse(

@@ -137,10 +137,13 @@ class Pulse(_Wave):
     tunable: ClassVar[tuple[str, ...]] = ("time", "every", "width", "high", "low")
 
     def __post_init__(self) -> None:
-        """Intervals are above zero."""
+        """Intervals are above zero, of which pulses are a part."""
         super().__post_init__()
         if np.min(self.every) <= 0.0:
             raise refuse(self.name, "every", self.every, "seconds above zero", "give another")
+        if np.min(self.width) < 0.0 or np.max(self.width) > 1.0:
+            rule = "width is the part of an interval that is high, 0 to 1"
+            raise refuse(self.name, "width", self.width, rule, "divide seconds by `every`")
 
     def compute(self, context: EvaluationContext) -> Values:
         """High or low level, by the position within the current period; low before `time`."""

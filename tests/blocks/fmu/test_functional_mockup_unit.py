@@ -71,8 +71,8 @@ def one_program(diagram: sf.Diagram) -> None:
 
 @pytest.mark.parametrize("version", ["fmu2", "fmu3"])
 def test_an_exported_plant_gives_what_the_one_program_gives(version: str, tmp_path: Path) -> None:
-    """Without feedthrough: no algebraic loop, and no delay beyond the sample."""
-    file = str(sf.export(plant(), version, tmp_path, dt=PERIOD).files[0])  # type: ignore[arg-type]
+    """Without feedthrough: no algebraic loop, and no delay beyond the sample. Paths are taken as exports give them."""
+    file: Any = sf.export(plant(), version, tmp_path, dt=PERIOD).files[0]  # type: ignore[arg-type]
     ports = vectors(entries("q"), entries("v"), entries("effort"))
     unit = blocks.FMU(name="unit", file=file, period=PERIOD, **ports)
     assert not unit.feeds_through()
