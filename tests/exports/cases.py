@@ -9,6 +9,7 @@ import subprocess
 import tempfile
 from functools import cache
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -146,6 +147,13 @@ def build(folder: Path, program: str, *files: str, include: Path | None = None) 
         objects.append(kept)
     run("gcc", *objects, "-lm", "-o", program, cwd=folder)
     return folder / program
+
+
+def packaged(of: sf.System | sf.Diagram, folder: Path, main: str, **options: Any) -> Path:
+    """The program of the C package of a system or a diagram with a `main` of its own, in the folder around it."""
+    sf.export(of, "c", folder, **options)
+    (folder / "main.c").write_text(main)
+    return build(folder, "../program", *sources(folder))
 
 
 def sources(folder: Path) -> list[str]:

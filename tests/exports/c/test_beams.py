@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.exports.cases import build, sources
+from tests.exports.cases import packaged
 from tests.simulation.beam_models import NAMES, at_rest, cantilever_system, column_diagram
 
 SHARES = [-5.0, -2.0, -0.5, 0.0, 0.5, 0.8, 0.9, 0.95]
@@ -20,10 +20,7 @@ DRIVER = Path(__file__).with_name("beams.c").read_text()
 @pytest.fixture(scope="module")
 def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
     """The program of a package of the column."""
-    folder = tmp_path_factory.mktemp("column") / "c"
-    sf.export(cantilever_system(), "c", folder)
-    (folder / "main.c").write_text(DRIVER)
-    return build(folder, "../judge")
+    return packaged(cantilever_system(), tmp_path_factory.mktemp("column") / "c", DRIVER)
 
 
 def judged(program: Path, rows: list[tuple[int, np.ndarray, np.ndarray, float]]) -> list[list[str]]:
@@ -56,10 +53,9 @@ def test_packages_refuse_the_same_parameters_as_descriptions(package: Path, name
 @pytest.mark.slow
 def test_exported_diagrams_report_the_error_of_beams_at_rest(tmp_path: Path) -> None:
     model, rest = at_rest(0.9, 2.0)
-    diagram = column_diagram(model, rest.q)
-    sf.export(diagram, "c", tmp_path, method="rk4", dt=1e-3, outputs=["first.q"])
-    (tmp_path / "main.c").write_text(Path(__file__).with_name("beams_of_diagrams.c").read_text())
-    program = build(tmp_path, "judge", *sources(tmp_path))
+    main = Path(__file__).with_name("beams_of_diagrams.c").read_text()
+    given = {"method": "rk4", "dt": 1e-3, "outputs": ["first.q"]}
+    program = packaged(column_diagram(model, rest.q), tmp_path / "c", main, **given)
     *errors, refusal = subprocess.run([program], capture_output=True, text=True, check=True).stdout.splitlines()
     assert [float(error) for error in errors] == pytest.approx([rest.bendings[0].error] * 2, rel=1e-6)
     assert refusal == "-9 -9"

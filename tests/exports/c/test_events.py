@@ -11,7 +11,7 @@ import pytest
 import symofros as sf
 from symofros.simulation.stepping.status import Status
 from tests.diagrams.run.test_switching import CASES
-from tests.exports.cases import build, run, sources
+from tests.exports.cases import packaged, run
 from tests.models import bounds
 from tests.simulation.grasping import grabbing
 from tests.simulation.mechanisms import slide
@@ -44,9 +44,8 @@ def test_packages_grasp_and_release_as_runs_do(tmp_path: Path, method: str, span
     }
     start = {"q1": 0.3, "q2": -0.4, "dq1": 0.5, "f.px": 1.2, "f.py": 0.2, "f.wz": 1.0}
     options: dict[str, Any] = {"method": method} | bounds(method, 1e-9, 1e-11)
-    sf.export(grabbing("moment"), "c", tmp_path / "c", name="plan", events=plan, start=start, dt=1e-3, **options)
-    (tmp_path / "c" / "main.c").write_text(MAIN)
-    program = build(tmp_path / "c", "../plan", *sources(tmp_path / "c"))
+    given = {"name": "plan", "events": plan, "start": start, "dt": 1e-3, **options}
+    program = packaged(grabbing("moment"), tmp_path / "c", MAIN, **given)
     *met, status, state = run(program, repr(span), "0.06", cwd=tmp_path).splitlines()
     model = sf.compile(grabbing("moment"))
     q0 = model.neutral()
@@ -66,9 +65,7 @@ def test_a_contact_rests_and_opens_in_packages(tmp_path: Path, method: str, span
     stated = CASES["rest"]
     options: dict[str, Any] = {"events": stated.events, "dt": 1e-3, "method": method}
     options |= bounds(method, 1e-10, 1e-12)
-    sf.export(stated.system, "c", tmp_path / "c", name="plan", start=stated.start, **options)
-    (tmp_path / "c" / "main.c").write_text(MAIN)
-    program = build(tmp_path / "c", "../plan", *sources(tmp_path / "c"))
+    program = packaged(stated.system, tmp_path / "c", MAIN, name="plan", start=stated.start, **options)
     *met, status, state = run(program, repr(span), "1.0", cwd=tmp_path).splitlines()
     again = sf.simulate(sf.compile(stated.system), [stated.start["z"]], t_end=1.0, **options)
     assert status == f"status {Status.FINISHED}" and met[-1].startswith("strike opens 0.827")
@@ -81,9 +78,8 @@ def test_a_contact_rests_and_opens_in_packages(tmp_path: Path, method: str, span
 def test_a_package_does_not_start_within_a_floor(tmp_path: Path) -> None:
     """It says so by its status, as a run does."""
     stated = CASES["rest"]
-    sf.export(stated.system, "c", tmp_path / "c", name="plan", start={"z": -1e-3}, events=stated.events)
-    (tmp_path / "c" / "main.c").write_text(MAIN)
-    program = build(tmp_path / "c", "../plan", *sources(tmp_path / "c"))
+    given = {"name": "plan", "start": {"z": -1e-3}, "events": stated.events}
+    program = packaged(stated.system, tmp_path / "c", MAIN, **given)
     assert f"status {Status.WRONG_CONTACT}" in run(program, "0.01", "0.1", cwd=tmp_path)
 
 
@@ -91,11 +87,8 @@ def test_a_package_ends_where_an_event_does_or_an_action_fails(tmp_path: Path) -
     """With the state that is there; targets that look for none refuse them."""
     ends = {**STRIKE, "rest": sf.Event("t - 0.9", terminal=True)}
     for t_end, expected in ((0.95, Status.TERMINAL_EVENT), (3.0, Status.ACTS_WITHOUT_END)):
-        folder = tmp_path / str(t_end) / "c"
-        events = ends if t_end < 1.0 else STRIKE
-        sf.export(BALL, "c", folder, name="plan", events=events, start={"z": 0.8})
-        (folder / "main.c").write_text(MAIN)
-        program = build(folder, "../plan", *sources(folder))
+        given = {"name": "plan", "events": ends if t_end < 1.0 else STRIKE, "start": {"z": 0.8}}
+        program = packaged(BALL, tmp_path / str(t_end) / "c", MAIN, **given)
         *met, status, state = run(program, "0.01", repr(t_end), cwd=tmp_path).splitlines()
         assert status == f"status {expected}" and met[0].startswith("strike 0.4")
         assert abs(float(state.split()[1])) < 0.2
@@ -110,9 +103,7 @@ def test_conditions_and_actions_of_one_package_take_sines(tmp_path: Path) -> Non
     """Formulas of both are files of the same source."""
     event = {"swings": sf.Event("sin(x) - 0.1", "rising", action={"dx": "-sin(x)*dx"})}
     system = slide(name="x", axis=(1, 0, 0), gravity=(1, 0, 0))
-    sf.export(system, "c", tmp_path / "c", name="plan", events=event, dt=1e-3)
-    (tmp_path / "c" / "main.c").write_text(MAIN)
-    program = build(tmp_path / "c", "../plan", *sources(tmp_path / "c"))
+    program = packaged(system, tmp_path / "c", MAIN, name="plan", events=event, dt=1e-3)
     *met, _, state = run(program, "0.1", "1.0", cwd=tmp_path).splitlines()
     known = sf.simulate(sf.compile(system), t_end=1.0, dt=1e-3, events=event)
     assert len(met) == len(known.events) > 0

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.exports.cases import build, run, sources
+from tests.exports.cases import packaged, run
 from tests.pulses import END, SHAPES, cart, drawn
 
 # What the methods leave between two instants, at the default bounds; rk4 of a bell, about which instants are half a
@@ -31,10 +31,8 @@ def speeds(tmp_path_factory: pytest.TempPathFactory) -> Speeds:
     def last(force: str, method: str, span: float, pulses: list[tuple[float, float]], dt: float = 0.01) -> list[float]:
         key = force, method, dt
         if key not in built:
-            folder = tmp_path_factory.mktemp("cart") / "c"
-            sf.export(cart(force), "c", folder, method=method, dt=dt, functions=["dynamics"])
-            (folder / "main.c").write_text(MAIN)
-            built[key] = build(folder, "../cart", *sources(folder))
+            given = {"method": method, "dt": dt, "functions": ["dynamics"]}
+            built[key] = packaged(cart(force), tmp_path_factory.mktemp("cart") / "c", MAIN, **given)
         words = [repr(number) for pulse in pulses for number in pulse]
         lines = run(built[key], repr(span), *words, cwd=built[key].parent).splitlines()
         assert all(line.split()[0] == "1" for line in lines)

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.exports.cases import build
+from tests.exports.cases import packaged
 from tests.interop.turning import SYSTEMS
 from tests.runtime.test_unit_quaternions import with_length
 
@@ -20,10 +20,7 @@ DRIVER = Path(__file__).with_name("quaternions.c").read_text()
 
 @pytest.fixture(scope="module")
 def package(tmp_path_factory: pytest.TempPathFactory) -> Path:
-    folder = tmp_path_factory.mktemp("hopper") / "c"
-    sf.export(SYSTEMS["hopper"](), "c", folder)
-    (folder / "main.c").write_text(DRIVER)
-    return build(folder, "../move")
+    return packaged(SYSTEMS["hopper"](), tmp_path_factory.mktemp("hopper") / "c", DRIVER)
 
 
 def test_instances_normalise_or_refuse_quaternions(package: Path) -> None:

@@ -6,13 +6,14 @@ import subprocess
 from collections import ChainMap
 from pathlib import Path
 from string import Template
+from typing import Any
 
 import numpy as np
 import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from tests.exports.cases import build
+from tests.exports.cases import packaged
 from tests.models import compiled
 
 PROGRAM = Template(Path(__file__).with_name("reactions.c.in").read_text())
@@ -69,6 +70,17 @@ def numbers(line: str) -> np.ndarray:
     return np.array(list(map(float, line.split())))
 
 
+def answered(folder: Path, name: str, actuators: str, states: Any, prescribed: str = "", **more: int) -> list[str]:
+    """Lines that a package's program says of states; `more`: numbers of joints and of sections that it shows."""
+    m = compiled(name) if name in MODELS else sf.compile(SYSTEMS[name])
+    sizes = {"nq": m.nq, "nv": m.nv, "nu": m.nu, "nc": m.nc, "n": actuators.count(",") + 1, "joints": 0, "sections": 0}
+    sizes |= {"states": len(states), **more}
+    text = PROGRAM.substitute(name=name, actuators=actuators, prescribed=prescribed, **sizes)
+    program = packaged(SYSTEMS[name], folder / "c", text, frames=[])
+    given = " ".join(repr(float(x)) for state in states for part in state for x in part)
+    return subprocess.run([program], input=given, capture_output=True, text=True, check=True).stdout.splitlines()
+
+
 @pytest.mark.parametrize(
     "name",
     [
@@ -84,7 +96,6 @@ def test_c_gives_the_reactions_of_python(tmp_path: Path, name: str) -> None:
     states = motions(m, name, 3)
     if not m.nc:
         states = [(q, v, np.cos(np.arange(m.nv) + q[0]), u) for q, v, _, u in states]
-    sf.export(SYSTEMS[name], "c", tmp_path, frames=[])
     codes = ", ".join(
         str(m.names.u.index(actuator)) if actuator in m.names.u else f"SYM_ON_SPEED({m.names.v.index(actuator)})"
         for actuator in actuators
@@ -92,16 +103,10 @@ def test_c_gives_the_reactions_of_python(tmp_path: Path, name: str) -> None:
     prescribed = 'call(sym_find(model, "prescribed_efforts", NULL));' if m.record.driven else ""
     if m.names.sections:
         prescribed += 'call(sym_find(model, "section_forces", NULL));'
-    sizes = {"nq": m.nq, "nv": m.nv, "nu": m.nu, "nc": m.nc, "n": len(actuators), "joints": len(m.names.joints)}
-    sizes["sections"] = len(m.names.sections)
-    text = PROGRAM.substitute(name=name, actuators=codes, states=len(states), prescribed=prescribed, **sizes)
-    (tmp_path / "main.c").write_text(text)
-    build(tmp_path, "reactions")
-    by_size = np.linspace(1.0, 2.0, len(actuators))
-    t = 0.25
-    given = " ".join(repr(float(x)) for state in states for part in (*state, by_size, [t]) for x in part)
-    done = subprocess.run([tmp_path / "reactions"], input=given, capture_output=True, text=True, check=True)
-    lines = iter(done.stdout.splitlines())
+    by_size, t = np.linspace(1.0, 2.0, len(actuators)), 0.25
+    rows = [(*state, by_size, [t]) for state in states]
+    shown = {"joints": len(m.names.joints), "sections": len(m.names.sections)}
+    lines = iter(answered(tmp_path, name, codes, rows, prescribed, **shown))
     assert next(lines).split() == list(m.names.joints)
     for q, v, a, u in states:
         wanted = sf.actuator_efforts(m, q, v, a, actuators, u=u, sizes=by_size, t=t, beam_limit=1.0)
@@ -121,13 +126,9 @@ def test_c_gives_the_reactions_of_python(tmp_path: Path, name: str) -> None:
 
 
 def test_motions_that_actuators_cannot_produce_are_refused(tmp_path: Path) -> None:
-    name, m = "four_bar", compiled("four_bar")
+    m = compiled("four_bar")
     state = sf.assemble(m, [1.2, -1.0, 1.3], [1.0, 0, 0], held=["q1"])
     a = m.forward_dynamics(state.q, state.v, np.zeros(m.nu))
-    sf.export(MODELS[name], "c", tmp_path, frames=[])
-    sizes = {"nq": m.nq, "nv": m.nv, "nu": m.nu, "nc": m.nc, "n": 1, "joints": 0, "states": 4, "sections": 0}
-    (tmp_path / "main.c").write_text(PROGRAM.substitute(name=name, actuators="SYM_ON_SPEED(1)", prescribed="", **sizes))
-    build(tmp_path, "reactions")
     u = np.zeros(m.nu)
     cases = [
         (state.q, state.v, a, u, [1.0], [0.0]),
@@ -135,21 +136,13 @@ def test_motions_that_actuators_cannot_produce_are_refused(tmp_path: Path) -> No
         (state.q, state.v + [0.01, 0, 0], a, u, [1.0], [0.0]),
         (state.q, state.v, a + [0.01, 0, 0], u, [1.0], [0.0]),
     ]
-    given = " ".join(repr(float(x)) for case in cases for part in case for x in part)
-    done = subprocess.run([tmp_path / "reactions"], input=given, capture_output=True, text=True, check=True)
     # One number a line, alone: what the call returned; -2 is SYM_EFFORTS_INCONSISTENT.
-    answers = done.stdout.splitlines()[1::4]
+    answers = answered(tmp_path, "four_bar", "SYM_ON_SPEED(1)", cases)[1::4]
     assert [int(answer) for answer in answers] == [0, -2, -2, -2]
 
 
 def test_an_actuator_named_twice_is_refused(tmp_path: Path) -> None:
-    name, m = "double_pendulum", compiled("double_pendulum")
-    sf.export(MODELS[name], "c", tmp_path, frames=[])
-    sizes = {"nq": m.nq, "nv": m.nv, "nu": m.nu, "nc": m.nc, "n": 2, "joints": 0, "states": 1, "sections": 0}
-    (tmp_path / "main.c").write_text(
-        PROGRAM.substitute(name=name, actuators="SYM_ON_SPEED(1), SYM_ON_SPEED(1)", prescribed="", **sizes)
-    )
-    build(tmp_path, "reactions")
-    given = " ".join(["0.1"] * (m.nq + 2 * m.nv + m.nu) + ["1.0", "1.0", "0.0"])
-    done = subprocess.run([tmp_path / "reactions"], input=given, capture_output=True, text=True, check=True)
-    assert int(done.stdout.splitlines()[1]) == -1  # SYM_EFFORTS_UNKNOWN
+    m = compiled("double_pendulum")
+    row = [[0.1] * (m.nq + 2 * m.nv + m.nu), [1.0, 1.0], [0.0]]
+    said = answered(tmp_path, "double_pendulum", "SYM_ON_SPEED(1), SYM_ON_SPEED(1)", [row])
+    assert int(said[1]) == -1  # SYM_EFFORTS_UNKNOWN

@@ -12,7 +12,8 @@ import pytest
 
 import symofros as sf
 from symofros.simulation.stepping.status import Status
-from tests.exports.cases import build, run, sources
+from tests.exports import cases
+from tests.exports.cases import run
 from tests.models import bounds
 from tests.simulation.rigid_scenes import (
     WITHOUT_ANSWER,
@@ -39,10 +40,7 @@ SCENES: dict[str, tuple[sf.System, dict[str, float]]] = {
 
 def packaged(folder: Path, main: str, system: sf.System, start: dict[str, float], **options: Any) -> Path:
     """A program of a system's package and a main."""
-    (folder / "c").mkdir(parents=True, exist_ok=True)
-    sf.export(system, "c", folder / "c", name="plan", start=start, dt=1e-3, **options)
-    (folder / "c" / "main.c").write_text(main)
-    return build(folder / "c", "../plan", *sources(folder / "c"))
+    return cases.packaged(system, folder / "c", main, name="plan", start=start, dt=1e-3, **options)
 
 
 def first(model: sf.Model, start: dict[str, float]) -> tuple[Any, dict[str, float]]:

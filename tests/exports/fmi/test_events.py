@@ -15,82 +15,51 @@ from tests.diagrams.run.test_switching import CASES
 from tests.exports.c.test_events import BALL, STRIKE
 from tests.exports.c.test_rigid_contacts import SCENES, first
 from tests.exports.fmi.logs import heard
-from tests.exports.fmi.test_fmu import Unit, quickly
+from tests.exports.fmi.test_fmu import Unit, exported
 from tests.simulation.rigid_scenes import WITHOUT_ANSWER, ball_system, rod_system, three_feet
+
+STRIKES = {**STRIKE, "heavy": sf.Event("t - 0.1", action={"dz": "dz - 1"}, once=True)}
+RESTS = CASES["rest"]
 
 
 @pytest.mark.parametrize("version", [2, 3])
-def test_a_ball_bounces_in_co_simulation(tmp_path: Path, version: int) -> None:
-    """As in sf.simulate, whatever the communication step; kept states know which events have acted for good."""
-    events = {**STRIKE, "heavy": sf.Event("t - 0.1", action={"dz": "dz - 1"}, once=True)}
-    with quickly():
-        sf.export(BALL, f"fmu{version}", tmp_path, events=events, start={"z": 0.8})  # type: ignore[arg-type]
-    unit = str(tmp_path / "ball.fmu")
+@pytest.mark.parametrize(
+    ("ball", "events", "z", "t_end", "met", "bound"),
+    [(BALL, STRIKES, 0.8, 0.9, "strike", 1e-9), (RESTS.system, RESTS.events, 0.05, 1.0, "strike opens", 1e-11)],
+    ids=["bounces", "rests and is lifted"],
+)
+def test_a_ball_moves_in_co_simulation_as_in_a_run(
+    tmp_path: Path, version: int, ball: sf.System, events: Any, z: float, t_end: float, met: str, bound: float
+) -> None:
+    """Whatever the communication step; kept states know which events have acted for good, thresholds are the run's."""
+    unit = str(exported(ball, version, tmp_path, events=events, start={"z": z}))
     assert fmpy.read_model_description(unit).modelExchange is None
-    done = fmpy.simulate_fmu(unit, stop_time=0.9, output_interval=0.01, output=["q.z", "v.z"])
-    run = sf.simulate(sf.compile(BALL), [0.8], t_end=0.9, events=events, dt=1e-3)
-    assert len(run.events) >= 3 and done["q.z"][-1] == pytest.approx(run.q[-1, 0], abs=1e-9)
-    assert done["v.z"][-1] == pytest.approx(run.v[-1, 0], abs=1e-8)
-
-
-def packed_state(unit: Unit) -> tuple[Any, Any]:
-    """The unit's state, as it keeps it and as bytes, which it declares to give."""
-    about = unit.description.coSimulation
-    assert about.canGetAndSetFMUstate and about.canSerializeFMUstate
-    if unit.version == 3:
-        kept = unit.fmu.getFMUState()
-        return kept, unit.fmu.serializeFMUState(kept)
-    kept = unit.fmu.getFMUstate()
-    return kept, unit.fmu.serializeFMUstate(kept)
-
-
-def restore_packed_state(unit: Unit, text: Any) -> None:
-    """A state of another unit of the same model."""
-    if unit.version == 3:
-        unit.fmu.setFMUState(unit.fmu.deserializeFMUState(text))
-    else:
-        unit.fmu.setFMUstate(unit.fmu.deSerializeFMUstate(text))
+    done = fmpy.simulate_fmu(unit, stop_time=t_end, output_interval=0.01, output=["q.z", "v.z"])
+    run = sf.simulate(sf.compile(ball), [z], t_end=t_end, events=events, dt=1e-3)
+    assert len(run.events) >= 3 and run.events[-1].name == met
+    assert met == "strike" or abs(done["q.z"][50]) < 1e-12
+    assert done["q.z"][-1] == pytest.approx(run.q[-1, 0], abs=bound)
+    assert done["v.z"][-1] == pytest.approx(run.v[-1, 0], abs=10 * bound)
 
 
 @pytest.mark.parametrize("version", [2, 3])
 def test_serialised_states_know_which_events_have_acted(tmp_path: Path, version: int) -> None:
     """A ball that bounces, and is struck once for good, goes on in another unit by the same bits."""
-    events = {**STRIKE, "heavy": sf.Event("t - 0.1", action={"dz": "dz - 1"}, once=True)}
-    with quickly():
-        path = sf.export(BALL, f"fmu{version}", tmp_path, events=events, start={"z": 0.8}).files[0]  # type: ignore[arg-type]
-    first, other = (Unit(Path(path), version, True, tmp_path / name) for name in ("first", "other"))
+    path = exported(BALL, version, tmp_path, events=STRIKES, start={"z": 0.8})
+    first, other = (Unit(path, version, True, tmp_path / name) for name in ("first", "other"))
     for it in (first, other):
         it.start()
     for k in range(45):
         first.fmu.doStep(0.01 * k, 0.01)
-    restore_packed_state(other, packed_state(first)[1])
-    for it in (first, other):
-        for k in range(45, 90):
-            it.fmu.doStep(0.01 * k, 0.01)
+    other.restore(other.unpack(first.pack(first.save())))
     names = (*first.named("q."), *first.named("v."))
-    assert np.array_equal(first.get(*names), other.get(*names))
-
-
-@pytest.mark.parametrize("version", [2, 3])
-def test_a_ball_rests_and_is_lifted_in_co_simulation(tmp_path: Path, version: int) -> None:
-    """As in sf.simulate, which has the same threshold here."""
-    stated = CASES["rest"]
-    with quickly():
-        sf.export(stated.system, f"fmu{version}", tmp_path, events=stated.events, start=stated.start)  # type: ignore[arg-type]
-    unit = str(tmp_path / "resting.fmu")
-    done = fmpy.simulate_fmu(unit, stop_time=1.0, output_interval=0.01, output=["q.z", "v.z"])
-    run = sf.simulate(sf.compile(stated.system), [0.05], t_end=1.0, events=stated.events, dt=1e-3)
-    assert run.events[-1].name == "strike opens" and abs(done["q.z"][50]) < 1e-12
-    assert done["q.z"][-1] == pytest.approx(run.q[-1, 0], abs=1e-11)
-    assert done["v.z"][-1] == pytest.approx(run.v[-1, 0], abs=1e-11)
+    ends = [moved[-1] for it in (first, other) for moved in it.twice(45, 0.01, *names)]
+    assert all(np.array_equal(ends[0], end) for end in ends[1:])
 
 
 def test_importers_are_told_that_a_motion_has_ended(tmp_path: Path) -> None:
     """Who repeats a step that is discarded asks whether that makes sense: a start below the floor never moves on."""
-    stated = CASES["rest"]
-    with quickly():
-        sf.export(stated.system, "fmu2", tmp_path, events=stated.events, start=stated.start)
-    unit = str(tmp_path / "resting.fmu")
+    unit = str(exported(RESTS.system, 2, tmp_path, events=RESTS.events, start=RESTS.start))
     with heard() as (logger, log):
         done = fmpy.simulate_fmu(
             unit, stop_time=1.0, output_interval=0.01, start_values={"q.z": -0.1}, output=["q.z"], logger=logger
@@ -109,49 +78,40 @@ def test_bodies_slide_in_co_simulation(tmp_path: Path, version: int, method: Any
     system, start = SCENES[scene]
     start = start | ({"free.pz": 0.11} if scene == "rims" else {"free.wz": 15.0})
     options: dict[str, Any] = {"method": method} | ({"rtol": 1e-9, "atol": 1e-12} if method == "rodas4" else {})
-    with quickly():
-        path = sf.export(system, f"fmu{version}", tmp_path, start=start, **options).files[0]  # type: ignore[arg-type]
-    unit = Unit(Path(path), version, True, tmp_path / "unit")
+    path = exported(system, version, tmp_path, start=start, **options)
+    unit = Unit(path, version, True, tmp_path / "unit")
     assert unit.description.modelExchange is None
     unit.start()
     names = unit.named("q.")
-    ends = []
     for k in range(10):
         unit.fmu.doStep(0.01 * k, 0.01)
-    kept, text = packed_state(unit)
-    other = Unit(Path(path), version, True, tmp_path / "other")
+    other = Unit(path, version, True, tmp_path / "other")
     other.start()
-    restore_packed_state(other, text)
-    for it in (unit, unit, other):
-        for k in range(10, 20):
-            it.fmu.doStep(0.01 * k, 0.01)
-        ends.append(it.get(*names))
-        (unit.fmu.setFMUState if version == 3 else unit.fmu.setFMUstate)(kept)
+    other.restore(other.unpack(unit.pack(unit.save())))
+    ends = [moved[-1] for it in (unit, other) for moved in it.twice(10, 0.01, *names)]
     model = sf.compile(system)
     q, v = first(model, start)
     # To 1 s, for the package's threshold of what accumulates.
     run = sf.simulate(model, q, v, t_end=1.0, output=[0.0, 0.2, 1.0], dt=1e-3, **options)
     # Steps that adapt begin anew with each communication step.
     bound = 1e-11 if method == "rk4" else 1e-6
-    assert np.array_equal(ends[0], ends[1]) and np.array_equal(ends[0], ends[2])
+    assert all(np.array_equal(ends[0], end) for end in ends[1:])
     assert ends[0] == pytest.approx(run.q[1], abs=bound) and len(run.events) > 2
 
 
 def test_a_ball_strikes_as_co_simulation_begins(tmp_path: Path) -> None:
     """It leaves the ground at half of its speed."""
-    with quickly():
-        sf.export(ball_system(0.5), "fmu2", tmp_path, start={"free.pz": 0.1, "free.vz": -1.0})
-    done = fmpy.simulate_fmu(str(tmp_path / "ball.fmu"), stop_time=0.05, output_interval=0.01, output=["q.'free.pz'"])
+    unit = str(exported(ball_system(0.5), 2, tmp_path, start={"free.pz": 0.1, "free.vz": -1.0}))
+    done = fmpy.simulate_fmu(unit, stop_time=0.05, output_interval=0.01, output=["q.'free.pz'"])
     assert done["q.'free.pz'"][-1] == pytest.approx(0.1 + 0.5 * 0.05 - 0.5 * 9.81 * 0.05**2, abs=1e-12)
 
 
 def test_importers_are_told_of_painleves_paradox(tmp_path: Path) -> None:
     """A rod that leans against its slide, with too much friction."""
     start = {"z": float(np.cos(0.5)), "angle": 0.5, "dx": -2.0}
-    with quickly():
-        sf.export(rod_system(1.6), "fmu2", tmp_path, start=start)
+    unit = str(exported(rod_system(1.6), 2, tmp_path, start=start))
     with heard() as (logger, log):
-        fmpy.simulate_fmu(str(tmp_path / "rod.fmu"), stop_time=0.1, output_interval=0.01, logger=logger)
+        fmpy.simulate_fmu(unit, stop_time=0.1, output_interval=0.01, logger=logger)
     assert "Painleve's paradox" in "".join(log)
 
 
@@ -160,8 +120,7 @@ def test_importers_are_told_once_a_run_of_strikes_in_sequence(tmp_path: Path, ve
     """After a reset again; a run without spin, after one that had such a strike, has none."""
     names = [f"free.{name}" for name in ("vx", "vy", "vz", "wx", "wy", "wz")]
     start = {"free.pz": 0.1} | dict(zip(names, WITHOUT_ANSWER, strict=True))
-    with quickly():
-        path = sf.export(three_feet(), f"fmu{version}", tmp_path, start=start).files[0]  # type: ignore[arg-type]
+    path = str(exported(three_feet(), version, tmp_path, start=start))
     about, said = fmpy.read_model_description(path), list[int]()
     with heard() as (logger, log):
         unit = instantiate_fmu(fmpy.extract(path), about, fmi_type="CoSimulation", logger=logger)

@@ -7,7 +7,6 @@ import math
 import re
 import shutil
 from collections.abc import Iterator
-from contextlib import contextmanager
 from pathlib import Path
 from typing import Any
 
@@ -66,13 +65,13 @@ def system_called(name: str) -> sf.System:
     return (OWN | BENT)[name] if name in OWN | BENT else system_of(name)
 
 
-@contextmanager
-def quickly(less: bool = True) -> Iterator[None]:
-    """Libraries compiled in a fraction of the time; the loop's are as they ship."""
+def exported(of: sf.System | sf.Diagram, version: int, folder: Path, quick: bool = True, **options: Any) -> Path:
+    """The unit of a system or a diagram, its library compiled in a fraction of the time; or as it ships."""
+    target: Any = f"fmu{version}"
     with pytest.MonkeyPatch.context() as patch:
-        if less:
+        if quick:
             patch.setattr(compiling, "FLAGS", ("-O0", *(flag for flag in compiling.FLAGS if flag != "-O2")))
-        yield
+        return sf.export(of, target, folder, **options).files[0]
 
 
 @pytest.fixture(scope="module")
@@ -83,12 +82,10 @@ def made(tmp_path_factory: pytest.TempPathFactory) -> Any:
     def make(name: str, version: int) -> Path:
         if (name, version) not in known:
             folder = tmp_path_factory.mktemp("fmu") / "out"
-            target: Any = f"fmu{version}"
             stated: dict[str, Any] = {"limp": {"method": "dopri5"}, "column": {}}
-            options = stated.get(name, {"dt": STEP.get(name, 1e-3)})
-            with quickly((name, version) != ("four_bar", 3)):
-                done = sf.export(system_called(name), target, folder, start=STARTS.get(name), **options)
-            known[name, version] = done.files[0]
+            options = {"start": STARTS.get(name)} | stated.get(name, {"dt": STEP.get(name, 1e-3)})
+            quick = (name, version) != ("four_bar", 3)
+            known[name, version] = exported(system_called(name), version, folder, quick, **options)
         return known[name, version]
 
     return make
@@ -216,6 +213,36 @@ class Unit:
     def named(self, prefix: str) -> list[str]:
         return [name for name in self.references if name.startswith(prefix)]
 
+    def save(self) -> Any:
+        return (self.fmu.getFMUstate if self.version == 2 else self.fmu.getFMUState)()
+
+    def restore(self, state: Any) -> None:
+        (self.fmu.setFMUstate if self.version == 2 else self.fmu.setFMUState)(state)
+
+    def pack(self, state: Any) -> Any:
+        """A state as bytes, which the unit declares to give."""
+        assert self.description.coSimulation.canGetAndSetFMUstate and self.description.coSimulation.canSerializeFMUstate
+        return (self.fmu.serializeFMUstate if self.version == 2 else self.fmu.serializeFMUState)(state)
+
+    def unpack(self, text: Any) -> Any:
+        return (self.fmu.deSerializeFMUstate if self.version == 2 else self.fmu.deserializeFMUState)(text)
+
+    def twice(self, steps: int, h: float, *names: str) -> Iterator[np.ndarray]:
+        """What some variables are after each of so many steps, from the present state on and, gone back to it, anew."""
+        saved, start = self.save(), self.get("time")[0]
+        for _ in range(2):
+            rows = []
+            for k in range(steps):
+                self.fmu.doStep(start + k * h, h)
+                rows.append(self.get(*names))
+            yield np.array(rows)
+            self.restore(saved)
+
+    def continuous(self) -> None:
+        """Enter the mode in which states move."""
+        (self.fmu.newDiscreteStates if self.version == 2 else self.fmu.updateDiscreteStates)()
+        self.fmu.enterContinuousTimeMode()
+
     def states(self, x: np.ndarray) -> None:
         array = (ctypes.c_double * len(x))(*x)
         self.fmu.setContinuousStates(array, len(x))
@@ -243,11 +270,7 @@ def unit(made: Any, version: int, tmp_path: Path) -> Iterator[Any]:
 def test_directional_derivatives_match_the_functions(unit: Any, name: str, rng: np.random.Generator) -> None:
     it = unit(name, cosim=False)
     it.start()
-    if it.version == 2:
-        it.fmu.newDiscreteStates()
-    else:
-        it.fmu.updateDiscreteStates()
-    it.fmu.enterContinuousTimeMode()
+    it.continuous()
     states = it.named("q.") + it.named("v.")
     inputs = it.named("u.")
     unknown = it.named("der(") + it.named("p.")
@@ -278,19 +301,13 @@ def test_fmu_states_are_saved_and_restored(unit: Any) -> None:
     it = unit("four_bar", cosim=True)
     it.start()
     it.fmu.doStep(0.0, 0.01)
-    get, put = ("getFMUstate", "setFMUstate") if it.version == 2 else ("getFMUState", "setFMUState")
-    saved = getattr(it.fmu, get)()
-    pack, unpack = (
-        ("serializeFMUstate", "deSerializeFMUstate")
-        if it.version == 2
-        else ("serializeFMUState", "deserializeFMUState")
-    )
-    text = getattr(it.fmu, pack)(saved)
+    saved = it.save()
+    text = it.pack(saved)
     names = it.named("q.")
     it.fmu.doStep(0.01, 0.02)
     first = it.get(*names)
-    for state in (saved, getattr(it.fmu, unpack)(text)):
-        getattr(it.fmu, put)(state)
+    for state in (saved, it.unpack(text)):
+        it.restore(state)
         assert it.get("time")[0] == 0.01
         it.fmu.doStep(0.01, 0.02)
         assert np.array_equal(it.get(*names), first)
@@ -395,11 +412,9 @@ def test_a_missing_fmpy_is_reported(monkeypatch: pytest.MonkeyPatch, tmp_path: P
 )
 def test_models_without_states_or_inputs_become_fmus(tmp_path: Path, version: int, prescribed: bool) -> None:
     body = sf.RigidBody("b", sf.Joint("j", "revolute", prescribed=prescribed), sf.Inertia(1.0, (1, 0, 0), (1, 1, 1)))
-    target: Any = f"fmu{version}"
-    with quickly():
-        done = sf.export(sf.System("odd", (body,)), target, tmp_path, outputs=[])
-    assert validate_fmu(str(done.files[0])) == []
-    assert fmpy.simulate_fmu(str(done.files[0]), fmi_type="CoSimulation", stop_time=0.01)["time"][-1] == 0.01
+    path = str(exported(sf.System("odd", (body,)), version, tmp_path, outputs=[]))
+    assert validate_fmu(path) == []
+    assert fmpy.simulate_fmu(path, fmi_type="CoSimulation", stop_time=0.01)["time"][-1] == 0.01
 
 
 @pytest.mark.parametrize("version", ONE_VERSION)

@@ -11,7 +11,7 @@ import pytest
 from fmpy.validation import validate_fmu
 
 import symofros as sf
-from tests.exports.fmi.test_fmu import quickly
+from tests.exports.fmi.test_fmu import exported
 
 _DRIVE: Any = {"dx": "4*sin(9*t)"}
 _ELEMENTS = sf.LuGre(2.0, 3e3, 20.0, static=3.0, stribeck_velocity=0.05), sf.Hysteresis(80.0, 0.5, 2.0)
@@ -36,9 +36,7 @@ def simulated(**settings: Any) -> dict[str, float]:
 
 @pytest.fixture(scope="module", params=[pytest.param(2, marks=pytest.mark.slow), 3])
 def path(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactory) -> str:
-    folder, target = tmp_path_factory.mktemp("fmu") / "out", f"fmu{request.param}"
-    with quickly():
-        return str(sf.export(dragged(), target, folder, start=_START, dt=1e-3).files[0])  # type: ignore[arg-type]
+    return str(exported(dragged(), request.param, tmp_path_factory.mktemp("fmu") / "out", start=_START, dt=1e-3))
 
 
 def test_a_unit_moves_its_states_as_python_does(path: str) -> None:

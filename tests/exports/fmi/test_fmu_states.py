@@ -13,7 +13,7 @@ from fmpy.simulation import FMICallException, instantiate_fmu
 import symofros as sf
 from tests.exports.cases import PLANAR
 from tests.exports.fmi.logs import heard
-from tests.exports.fmi.test_fmu import LIMP, Unit, quickly
+from tests.exports.fmi.test_fmu import LIMP, Unit, exported
 
 SAME = 1e-12
 # Differences of fourth order by a relative step of 1e-3.
@@ -29,11 +29,7 @@ def made(request: pytest.FixtureRequest, tmp_path_factory: pytest.TempPathFactor
 
     def make(system: sf.System, cosim: bool, **options: Any) -> Unit:
         if system.name not in known:
-            target: Any = f"fmu{version}"
-            with quickly():
-                known[system.name] = sf.export(system, target, tmp_path_factory.mktemp("fmu") / "out", **options).files[
-                    0
-                ]
+            known[system.name] = exported(system, version, tmp_path_factory.mktemp("fmu") / "out", **options)
         units.append(Unit(known[system.name], version, cosim, tmp_path_factory.mktemp("unit")))
         return units[-1]
 
@@ -48,17 +44,11 @@ def initialising(unit: Unit) -> None:
     unit.fmu.enterInitializationMode()
 
 
-def continuous(unit: Unit) -> None:
-    """Start, and enter the mode in which states move."""
-    unit.start()
-    (unit.fmu.newDiscreteStates if unit.version == 2 else unit.fmu.updateDiscreteStates)()
-    unit.fmu.enterContinuousTimeMode()
-
-
 def test_rates_use_the_latest_input(made: Any) -> None:
     """Nothing but the input changes between the calls."""
     unit, model = made(PLANAR, False), sf.compile(PLANAR)
-    continuous(unit)
+    unit.start()
+    unit.continuous()
     for u in (0.0, 0.7, -1.3):
         unit.set("u.q1", u)
         wanted = model.forward_dynamics(model.neutral(), np.zeros(model.nv), [u])
@@ -71,8 +61,7 @@ def test_rates_after_a_reset_use_the_start(made: Any) -> None:
     initialising(unit)
     first = unit.get(*unit.named("der("))
     unit.fmu.exitInitializationMode()
-    (unit.fmu.newDiscreteStates if unit.version == 2 else unit.fmu.updateDiscreteStates)()
-    unit.fmu.enterContinuousTimeMode()
+    unit.continuous()
     unit.states(np.full(len(unit.named("q.")) + len(unit.named("v.")), 0.3))
     unit.set("u.q1", 2.0)
     assert np.abs(unit.get(*unit.named("der(")) - first).max() > 0.1

@@ -9,8 +9,7 @@ from pathlib import Path
 import fmpy
 import pytest
 
-import symofros as sf
-from tests.exports.fmi.test_fmu import quickly
+from tests.exports.fmi.test_fmu import exported
 from tests.pulses import END, SHAPES, cart, drawn
 
 # Of CVODE at FMPy's relative tolerance, 1e-4 a step; of dopri5 at its default bounds.
@@ -23,10 +22,7 @@ def unit(tmp_path_factory: pytest.TempPathFactory) -> Callable[[str, int], str]:
 
     @cache
     def made(force: str, version: int) -> str:
-        folder: Path = tmp_path_factory.mktemp("fmu") / "out"
-        with quickly():
-            sf.export(cart(force), f"fmu{version}", folder, method="dopri5")  # type: ignore[arg-type]
-        return str(folder / "cart.fmu")
+        return str(exported(cart(force), version, tmp_path_factory.mktemp("fmu") / "out", method="dopri5"))
 
     return made
 

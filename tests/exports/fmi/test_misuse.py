@@ -4,7 +4,6 @@ from __future__ import annotations
 
 import gc
 from pathlib import Path
-from typing import Any
 
 import fmpy
 import pytest
@@ -14,7 +13,7 @@ import symofros as sf
 from symofros.exports.fmi.fmu import fmi_headers
 from tests.exports.cases import STRICT, run, sanitizers
 from tests.exports.fmi.logs import lasting_log
-from tests.exports.fmi.test_fmu import Unit, quickly, simulated
+from tests.exports.fmi.test_fmu import Unit, exported, simulated
 
 HERE = Path(__file__).parent
 HINGE = sf.System(
@@ -24,16 +23,10 @@ HINGE = sf.System(
 )
 
 
-def written(folder: Path, version: int) -> Path:
-    target: Any = f"fmu{version}"
-    with quickly():
-        return sf.export(HINGE, target, folder / "out", outputs=[]).files[0]
-
-
 @pytest.mark.parametrize("version", [2, 3])
 def test_wrong_calls_are_refused_in_words(tmp_path: Path, version: int) -> None:
     """No fault of memory, one message each; instances side by side move as one alone."""
-    fmpy.extract(str(written(tmp_path, version)), tmp_path)
+    fmpy.extract(str(exported(HINGE, version, tmp_path / "out", outputs=[])), tmp_path)
     run(
         "gcc",
         *STRICT,
@@ -59,7 +52,7 @@ def test_wrong_calls_are_refused_in_words(tmp_path: Path, version: int) -> None:
 
 def test_a_message_after_a_logger_of_fmpy_is_gone(tmp_path: Path) -> None:
     """Goes to the lasting logger; where none takes the place of the one that is gone, FMPy calls freed memory."""
-    path = written(tmp_path, 2)
+    path = exported(HINGE, 2, tmp_path / "out", outputs=[])
     assert simulated(str(path), stop_time=0.01, output_interval=0.01)[0] is not None
     gc.collect()
     it = Unit(path, 2, True, tmp_path / "unit")
