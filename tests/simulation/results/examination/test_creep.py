@@ -55,6 +55,17 @@ def test_friction_levels_off_at_the_same_speed_whatever_its_unit(force: float) -
     assert curve.reached == pytest.approx(force, rel=0.05) and curve.carried.max() == pytest.approx(force, rel=1e-3)
 
 
+@pytest.mark.parametrize("first", [2e-4, 1.2e-3, 1.6e-3, 1.7e-3])
+def test_friction_reaches_its_peak_from_whichever_speed_on_it_is_looked_at(first: float) -> None:
+    """The peak is beyond the speed at which the force levels off, which may be the first beside the present one."""
+    m = sf.compile(
+        slide(sf.Friction(1.0, 1.2, minimum_velocity=1e-3)), sf.Options(("dynamics",), backend="interpreter")
+    )
+    speeds = np.concatenate([[0.0], np.geomspace(first, 1e4 * first, 400)])
+    curve = friction_curve(m, 0, speeds, (m.neutral(), np.zeros(1), np.zeros(0)), None, 0.0)
+    assert curve is not None and curve.reached == pytest.approx(1.2, rel=1e-3)
+
+
 @pytest.mark.parametrize("method", ADAPTIVE)
 def test_sliding_swinging_and_resting_blocks_get_no_note(method: str) -> None:
     slides = sf.simulate(block(), t_end=5.0, u={"x": 1.3}, method=method)
