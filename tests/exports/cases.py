@@ -149,6 +149,18 @@ def build(folder: Path, program: str, *files: str, include: Path | None = None) 
     return folder / program
 
 
+def driven(diagram: sf.Diagram, folder: Path, rows: np.ndarray, *words: str, **options: Any) -> np.ndarray:
+    """What the program of a diagram gives, line by line: of times, and of the values of inlets beside them."""
+    name = sf.export(diagram, "c", folder, **options).name
+    text = Path(__file__).with_name("drive.c").read_text().replace("PROGRAM(", f"{name}_program(")
+    (folder / "main.c").write_text(text)
+    shutil.rmtree(folder / "build", ignore_errors=True)
+    given = "\n".join(" ".join(map(float.hex, row)) for row in rows.tolist())
+    done = subprocess.run([build(folder, "driven"), *words], input=given, capture_output=True, text=True)
+    assert done.returncode == 0, done.returncode
+    return np.array([[float.fromhex(word) for word in line.split()] for line in done.stdout.splitlines()])
+
+
 def packaged(of: sf.System | sf.Diagram, folder: Path, main: str, **options: Any) -> Path:
     """The program of the C package of a system or a diagram with a `main` of its own, in the folder around it."""
     sf.export(of, "c", folder, **options)

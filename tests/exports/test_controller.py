@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from collections.abc import Callable, Mapping
 from pathlib import Path
@@ -14,6 +13,7 @@ import pytest
 import symofros as sf
 from symofros import blocks
 from tests.diagrams.parts import Counter, Spoken
+from tests.exports import cases
 from tests.exports.cases import build, run
 
 MODELS = Path(__file__).parents[2] / "reference_models"
@@ -130,15 +130,8 @@ def driven(
     times: int = 1,
 ) -> np.ndarray:
     """What the program of a diagram gives, line by line, begun so many times."""
-    name = sf.export(diagram, "c", folder, outputs=outputs).name
     rows = np.tile(np.column_stack([RUN, *values.values()]), (times, 1))
-    shutil.copy(Path(__file__).with_name("drive.c"), folder / "main.c")
-    text = (folder / "main.c").read_text().replace("PROGRAM(", f"{name}_program(")
-    (folder / "main.c").write_text(text)
-    text = "\n".join(" ".join(map(float.hex, row)) for row in rows.tolist())
-    done = subprocess.run([build(folder, "driven"), *words], input=text, capture_output=True, text=True)
-    assert done.returncode == 0, done.returncode
-    return np.array([[float.fromhex(word) for word in line.split()] for line in done.stdout.splitlines()])
+    return cases.driven(diagram, folder, rows, *words, outputs=outputs)
 
 
 @pytest.mark.parametrize("case", CASES)

@@ -2,29 +2,17 @@
 
 from __future__ import annotations
 
-import shutil
 import subprocess
 from pathlib import Path
-from typing import Any
 
 import numpy as np
 import pytest
 
 import symofros as sf
 from tests.diagrams.run.test_switching import CASES, diagram
-from tests.exports.cases import build
+from tests.exports.cases import driven
 
-
-def driven(of: sf.Diagram, folder: Path, times: np.ndarray, *words: str, **options: Any) -> np.ndarray:
-    """What the program of a diagram gives at some times, line by line."""
-    name = sf.export(of, "c", folder, outputs=["plant.q", "plant.v"], **options).name
-    text = Path(__file__).with_name("drive.c").read_text().replace("PROGRAM(", f"{name}_program(")
-    (folder / "main.c").write_text(text)
-    shutil.rmtree(folder / "build", ignore_errors=True)
-    given = "\n".join(map(float.hex, times.tolist()))
-    done = subprocess.run([build(folder, "driven"), *words], input=given, capture_output=True, text=True)
-    assert done.returncode == 0, done.returncode
-    return np.array([[float.fromhex(word) for word in line.split()] for line in done.stdout.splitlines()])
+SIGNALS = ["plant.q", "plant.v"]
 
 
 @pytest.mark.parametrize("case", CASES)
@@ -33,7 +21,7 @@ def test_a_program_does_the_actions_of_the_run(case: str, tmp_path: Path) -> Non
     stated = CASES[case]
     of = diagram(stated)
     t = np.linspace(0.0, stated.t_end, 21)
-    found = driven(of, tmp_path / "c", t, method="rk4", dt=1e-3)
+    found = driven(of, tmp_path / "c", t[:, np.newaxis], method="rk4", dt=1e-3, outputs=SIGNALS)
     run = sf.Simulation(of).run(stated.t_end, method="rk4", dt=1e-3, record=stated.t_end / 20)
     assert run.events["plant"], "nothing acts"
     last = np.array([np.flatnonzero(run.t <= at + 1e-12)[-1] for at in t])
@@ -45,7 +33,7 @@ def test_parameters_say_how_modes_begin(tmp_path: Path) -> None:
     """By the names of the model; what events set later is memory, which has no name."""
     stated = CASES["latch"]
     of, t = diagram(stated), np.linspace(0.0, stated.t_end, 11)
-    found = driven(of, tmp_path / "c", t, "m.shut", "0.0", method="rk4", dt=1e-3)
+    found = driven(of, tmp_path / "c", t[:, np.newaxis], "m.shut", "0.0", method="rk4", dt=1e-3, outputs=SIGNALS)
     fell = sf.Simulation(of).run(stated.t_end, dt=1e-3, record=0.05, parameters={"m.shut": 0.0})
     assert not fell.events["plant"]
     np.testing.assert_allclose(found, np.column_stack([fell["plant.q"], fell["plant.v"]]), atol=1e-12)
