@@ -364,3 +364,15 @@ def test_implicit_steps_of_a_rim_on_a_cylinder_are_of_order_four(inside: bool) -
         run = sf.simulate(model, q, v, t_end=0.3, method="rodas4", adaptive=False, dt=dt)
         far.append(np.abs(run.q[-1] - known.q[-1]).max())
     assert far[1] < far[0] / 8 and far[1] < 1e-5
+
+
+@pytest.mark.parametrize("turn", [0.0, 0.5])
+def test_a_ring_falls_on_its_rod_from_where_several_points_are_as_near(turn: float) -> None:
+    """All of them, its axis along the rod, or two, as it leans: it falls freely by its play at the top."""
+    model, rod = on_a("cylinder", 0.3, 0.04, half=0.0), 0.04
+    q = model.neutral()
+    q[3], q[6] = sin((pi / 2 + turn) / 2), cos((pi / 2 + turn) / 2)
+    gap = model.contact_forces(q, np.zeros(6)).gap[0]
+    run = sf.simulate(model, q, t_end=0.12, **FINE)
+    assert gap == pytest.approx(RADIUS * cos(turn) - rod, abs=1e-12)
+    assert run.events[0].t == pytest.approx(sqrt(2 * (RADIUS * cos(turn) - rod) / G), abs=1e-10)

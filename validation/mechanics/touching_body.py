@@ -33,7 +33,9 @@ class TouchingBody:
         points: Centres of the balls [m].
         half: Half the length of the cylinder, or between the centres of the capsule's ends [m].
         log: Radius and length of the capsule that lies [m].
-        stiffness: Of a compliant contact, linear in the depth [N/m]; 0: the contact is rigid, without restitution.
+        stiffness: Of a compliant contact, linear in the depth [N/m]; 0: the contact is rigid.
+        restitution: Of a rigid contact.
+        strikes: Whether a rigid contact begins at a speed: then engines' contacts are damped beyond the critical rate.
         dissipation: Share of the force that a speed of approach adds [s/m].
     """
 
@@ -51,6 +53,8 @@ class TouchingBody:
     half: float = 0.0
     log: tuple[float, float] = (0.0, 0.0)
     stiffness: float = 0.0
+    restitution: float = 0.0
+    strikes: bool = False
     dissipation: float = 0.0
 
     @property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from .closed_loops import baumgarte, long_loops, redundant, singular
-from .contact import bounces, impact, incline, motions
+from .contact import bounces, impact, incline, motions, strikes
 from .flexible import beams
 from .rigid import energy, euler_angles, light_bodies, mass_ratio, stick_slip
 from .study import ParameterStudy
@@ -23,6 +23,7 @@ STUDIES: dict[str, ParameterStudy] = {
     "impact": impact.STUDY,
     "bounces": bounces.STUDY,
     "touching": motions.STUDY,
+    "strikes": strikes.STUDY,
     "energy": energy.STUDY,
     "euler_angles": euler_angles.STUDY,
 }

@@ -29,7 +29,7 @@ def maps() -> dict[str, Maps]:
     return CoarseMaps()
 
 
-JUDGED = ("baumgarte", "stiff_beam", "damped_beam", "light_link", "incline", "impact", "bounces", "touching")
+JUDGED = ("baumgarte", "stiff_beam", "damped_beam", "light_link", "incline", "impact", "bounces", "touching", "strikes")
 
 
 @pytest.mark.parametrize("name", sampled(JUDGED, JUDGED[2:]))

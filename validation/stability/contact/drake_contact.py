@@ -18,6 +18,9 @@ MISSING = "Drake is not installed: pip install 'symofros[engine-drake]'"
 _SLIDER = 1e-12
 # Stiffness of what is rigid [N/m]: discrete steps take as much of it as they can.
 _STIFF = 1e12
+# Of strikes: the lagged approximation has the friction of the last step's force, so that a strike takes several: its
+# stiffness times h^2/m, and its dissipation, whose inverse bounds the speed of a rebound [s/m]. SAP relaxes in steps.
+_SOFT, _LOSSY, _RELAXED = 1e-3, 200.0, 4.0
 _MODULES = tuple(
     f"pydrake.{name}"
     for name in ("geometry", "math", "multibody.plant", "multibody.tree", "systems.analysis", "systems.framework")
@@ -61,17 +64,18 @@ def slid(
 def moved(approximation: str, body: TouchingBody, h: float) -> Pose:
     """Pose of a body at the end, by steps of h: rigid as stiff as they allow, compliant by fixed steps of RK3."""
     geometry, poses, plants, tree, analysis, _ = map(import_module, _MODULES)
-    rigid = not body.stiffness
+    rigid, soft = not body.stiffness, body.strikes and approximation == "kLagged"
     builder, plant = _plant(approximation, (0.0, 0.0, -GRAVITY), h if rigid else 0.0)
     unit = tree.UnitInertia(*(moment / body.mass for moment in body.moments))
     moves = plant.AddRigidBody("body", tree.SpatialInertia(body.mass, np.zeros(3), unit))
     dry = plants.CoulombFriction(body.friction, body.friction)
     ground, touches = geometry.ProximityProperties(), geometry.ProximityProperties()
     # All of the compliance is the body's, so that forces act on the surface of the ground.
-    for properties, stiffness in ((ground, _STIFF), (touches, body.stiffness or _STIFF)):
-        geometry.AddContactMaterial(body.dissipation, stiffness, dry, properties)
+    own = _SOFT * body.mass / h**2 if soft else body.stiffness or _STIFF
+    for properties, stiffness in ((ground, _STIFF), (touches, own)):
+        geometry.AddContactMaterial(_LOSSY if soft else body.dissipation, stiffness, dry, properties)
         if rigid:
-            properties.AddProperty("material", "relaxation_time", 0.0)
+            properties.AddProperty("material", "relaxation_time", _RELAXED * h if body.strikes else 0.0)
     lies = poses.RigidTransform(poses.RotationMatrix.MakeXRotation(math.pi / 2), np.zeros(3))
     here, capsule = poses.RigidTransform(), body.shape == "capsule"
     floor = (lies, geometry.Capsule(*body.log)) if capsule else (here, geometry.HalfSpace())

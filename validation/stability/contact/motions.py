@@ -1,4 +1,4 @@
-"""Bodies that slide, stick, roll and bounce: ours, and those of engines as their steps get shorter."""
+"""Bodies that slide, stick, roll, bounce and strike: ours, and those of engines as their steps get shorter."""
 
 from __future__ import annotations
 
@@ -18,14 +18,17 @@ from ...mechanics.geometry import Array
 from ...mechanics.touching_body import GRAVITY, Pose, TouchingBody
 from ...reporting.findings import Finding
 from ..study import Cell, Grid, Maps, ParameterStudy, Subject, Verdict, cell, simulate
-from . import drake_contact
+from . import bullet_contact, dart_contact, drake_contact
 
 BOUND = 1e-3
 STEP = Grid("step [s]", (1.25e-4, 2.5e-4, 5e-4, 1e-3), (2.5e-4, 5e-4))
 METHODS, LAGGED, MUJOCO, EXUDYN = ("rk4", "rodas4"), "Drake, lagged", "MuJoCo", "Exudyn"
 # Name of the contact model: Drake's own name of its approximation.
 DRAKE = {LAGGED: "kLagged", "Drake, SAP": "kSap"}
-WHO = Grid.of("method or engine [-]", (*METHODS, *DRAKE, MUJOCO, EXUDYN))
+BULLET, DART = "PyBullet", "DART"
+WHO = Grid.of("method or engine [-]", (*METHODS, *DRAKE, MUJOCO, EXUDYN, BULLET, DART))
+# Engines that are no part of the validation extra.
+_EXTRAS = dict.fromkeys(DRAKE, drake_contact) | {BULLET: bullet_contact, DART: dart_contact}
 _SLOW = 1e-4  # Speed over which friction of compliant contacts grows, as Drake's does by its default [m/s].
 _LIES = math.pi / 2
 
@@ -82,10 +85,9 @@ BODIES = {
 
 
 @cache
-def model(name: str) -> sf.Model:
+def model(body: TouchingBody) -> sf.Model:
     """A body and what it touches, as we state it."""
-    body = BODIES[name]
-    law: dict[str, Any] = {"restitution": 0.0, "friction": body.friction}
+    law: dict[str, Any] = {"restitution": body.restitution, "friction": body.friction}
     if body.stiffness:
         law = {"stiffness": body.stiffness, "exponent": 1.0, "dissipation": body.dissipation}
         law |= {"friction": body.friction, "minimum_velocity": _SLOW}
@@ -109,48 +111,65 @@ def model(name: str) -> sf.Model:
     return sf.compile(sf.System("touching", (base, moves), gravity=(0, 0, -GRAVITY), connections=(contact,)))
 
 
-def run(name: str, **given: Any) -> sf.Trajectory:
+def run(body: TouchingBody, **given: Any) -> sf.Trajectory:
     """Our motion, at its start and end."""
-    body = BODIES[name]
     start, speeds = np.r_[body.p, body.xyzw], np.r_[body.R.T @ body.v, body.R.T @ body.w]
-    return simulate(model(name), start, speeds, t_end=body.end, output=[0.0, body.end], **given)
+    return simulate(model(body), start, speeds, t_end=body.end, output=[0.0, body.end], **given)
 
 
-def pose(name: str, moved: sf.Trajectory) -> Pose:
+def pose(body: TouchingBody, moved: sf.Trajectory) -> Pose:
     """Pose of the body at the end of a run."""
-    return Pose(*map(np.asarray, model(name).frame_pose("body", moved.q[-1])))
+    return Pose(*map(np.asarray, model(body).frame_pose("body", moved.q[-1])))
 
 
 @cache
-def reference(name: str) -> Pose:
-    """Pose at the end, by steps that choose themselves."""
-    return pose(name, run(name, method="dop853", rtol=1e-12, atol=1e-13))
+def reference(body: TouchingBody) -> sf.Trajectory:
+    """Our motion by steps that choose themselves."""
+    return run(body, method="dop853", rtol=1e-12, atol=1e-13)
 
 
-def measure(name: str) -> Callable[[float, float], Cell]:
+def measure(body: TouchingBody) -> Callable[[float, float], Cell]:
     """A function that evaluates one cell of a body's map, by step and method or engine."""
 
     def measured(h: float, who: float) -> Cell:
-        by = WHO.label(who)
+        by, known = WHO.label(who), pose(body, reference(body))
         if by in METHODS:
-            moved = run(name, method=by, adaptive=False, dt=h)
-            return cell(moved, lambda moved: pose(name, moved).far(reference(name)))
-        body = BODIES[name]
-        if by in DRAKE and not drake_contact.INSTALLED:
-            return Cell(math.nan, "refused", drake_contact.MISSING)
-        if (by == EXUDYN and body.shape != "balls") or (by in (EXUDYN, MUJOCO) and body.dissipation):
-            return Cell(math.nan, "refused", "no such shape, or another law of losses")
-        if by in DRAKE:
-            return Cell(drake_contact.moved(DRAKE[by], body, h).far(reference(name)))
-        return Cell((exudyn_contact.moved if by == EXUDYN else by_mujoco)(body, h).far(reference(name)))
+            moved = run(body, method=by, adaptive=False, dt=h)
+            return cell(moved, lambda moved: pose(body, moved).far(known))
+        refusal = _refusal(body, by)
+        return Cell(math.nan, "refused", refusal) if refusal else Cell(_by_engine(by, body, h).far(known))
 
     return measured
 
 
+def _refusal(body: TouchingBody, by: str) -> str:
+    """Why an engine does not move a body; "": it does."""
+    if by in _EXTRAS and not _EXTRAS[by].INSTALLED:
+        return str(_EXTRAS[by].MISSING)
+    balls_alone = by in (EXUDYN, BULLET, DART)
+    if (
+        (balls_alone and body.shape != "balls")
+        or (by in (BULLET, DART) and body.stiffness)
+        or (by not in DRAKE and body.dissipation)
+    ):
+        return "no such shape, or another law of losses"
+    return "no coefficient of restitution" if body.restitution and by not in (BULLET, DART) else ""
+
+
+def _by_engine(by: str, body: TouchingBody, h: float) -> Pose:
+    if by in DRAKE:
+        return drake_contact.moved(DRAKE[by], body, h)
+    move = {MUJOCO: by_mujoco, EXUDYN: exudyn_contact.moved, BULLET: bullet_contact.moved, DART: dart_contact.moved}
+    return move[by](body, h)
+
+
 def by_mujoco(body: TouchingBody, h: float) -> Pose:
-    """Pose by MuJoCo's soft contacts: rigid ones as stiff as a step of h allows, by its elliptic cones."""
+    """Pose by MuJoCo's soft contacts: rigid ones as stiff as a step of h allows, by its elliptic cones.
+
+    A strike at the critical rate of damping bounces by what a step has missed, thrice that rate does not.
+    """
     stiff = f'solref="{-body.stiffness!r} 0" solimp="0.9999 0.9999 0.001 0.5 2"'
-    soft = stiff if body.stiffness else f'solref="{2 * h!r} 1" solimp="0.999 0.9999 1e-5"'
+    soft = stiff if body.stiffness else f'solref="{2 * h!r} {3 if body.strikes else 1}" solimp="0.999 0.9999 1e-5"'
     soft = f'{soft} friction="{body.friction!r} 0 0" condim="3"'
     solid = f'<geom type="{body.shape}" size="{body.radius!r} {body.half!r}" {soft}/>'
     ground = f'<geom type="plane" size="5 5 1" {soft}/>'
@@ -228,7 +247,7 @@ STUDY = ParameterStudy(
     WHO,
     "distance from our motion by dop853 at 1e-12 [m]",
     BOUND,
-    tuple(Subject(name, measure(name)) for name in BODIES),
+    tuple(Subject(name, measure(body)) for name, body in BODIES.items()),
     judge,
     "steps that choose themselves; with fixed ones rk4, rodas4. In Drake the lagged approximation where bodies slide.",
     ("ours by dop853; each engine's limit",),
