@@ -8,7 +8,7 @@ from dataclasses import dataclass
 
 from symofros.errors import DescriptionError, Problem
 
-_BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
+BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 _FACTOR = re.compile(r"(?P<name>[A-Za-z%]+)(?:\^?(?P<power>-?\d+))?$")
 
 
@@ -27,11 +27,11 @@ class Unit:
 
 
 def _unit(scale: float = 1.0, **powers: int) -> Unit:
-    return Unit(scale, tuple(powers.get(name, 0) for name in _BASE))
+    return Unit(scale, tuple(powers.get(name, 0) for name in BASE))
 
 
 NAMES: dict[str, Unit] = {
-    **{name: _unit(**{name: 1}) for name in _BASE},
+    **{name: _unit(**{name: 1}) for name in BASE},
     "g": _unit(1e-3, kg=1),
     "mm": _unit(1e-3, m=1),
     "cm": _unit(1e-2, m=1),

@@ -6,22 +6,10 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 from xml.etree import ElementTree as Tree
 
+from symofros.base.units import BASE, parse
+from symofros.errors import DescriptionError
 from symofros.exports.fmi.fmu_variables import Variable
 from symofros.exports.material import Stepping
-
-_BASES: dict[str, dict[str, str]] = {
-    "s": {"s": "1"},
-    "m": {"m": "1"},
-    "m/s": {"m": "1", "s": "-1"},
-    "m/s2": {"m": "1", "s": "-2"},
-    "rad": {"rad": "1"},
-    "rad/s": {"rad": "1", "s": "-1"},
-    "rad/s2": {"rad": "1", "s": "-2"},
-    "N": {"kg": "1", "m": "1", "s": "-2"},
-    "N.m": {"kg": "1", "m": "2", "s": "-2"},
-    "J": {"kg": "1", "m": "2", "s": "-2"},
-    "kg": {"kg": "1"},
-}
 
 
 @dataclass(frozen=True)
@@ -121,8 +109,18 @@ def _units(root: Tree.Element, variables: Sequence[Variable]) -> None:
     into = Tree.SubElement(root, "UnitDefinitions")
     for unit in sorted({variable.unit for variable in variables if variable.unit}):
         entry = Tree.SubElement(into, "Unit", {"name": unit})
-        if unit in _BASES:
-            Tree.SubElement(entry, "BaseUnit", _BASES[unit])
+        if base := _base(unit):
+            Tree.SubElement(entry, "BaseUnit", base)
+
+
+def _base(name: str) -> dict[str, str]:
+    """Powers of the units of SI, and the factor by which values are multiplied; {} of a text that is no unit."""
+    try:
+        unit = parse(name.replace(".", " "))
+    except DescriptionError:  # Units of parameters are any text.
+        return {}
+    powers = {base: str(power) for base, power in zip(BASE, unit.powers, strict=True) if power}
+    return powers if unit.scale == 1.0 else {**powers, "factor": repr(unit.scale)}
 
 
 def _typed(variable: Variable) -> dict[str, str]:
