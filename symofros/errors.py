@@ -242,7 +242,10 @@ class StoredStateWarning(UserWarning):
 
 
 class InconsistentModelWarning(UserWarning):
-    """A model leaves out terms of the order of those it keeps, or a matrix is a rotation to a few digits only."""
+    """A model leaves out terms of the order of those it keeps, or a matrix is a rotation to a few digits only.
+
+    Also: a function takes friction that sticks in runs as smooth, at a joint at rest.
+    """
 
 
 def near_name(name: str, known: Iterable[str], spelling: Callable[[str], str] = str, likeness: float = 0.5) -> str:

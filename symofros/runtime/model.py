@@ -236,11 +236,14 @@ class Model(
             check_argument("forward_dynamics: multipliers", multipliers, bool)
         if multipliers:
             return self.constrained_dynamics(q, v, u, par=par, t=t, gains=gains, z=z)[:2]
-        return self._one(
+        a = self._one(
             "forward_dynamics",
             {"q": q, "v": v if z is None else self._with_states(v, z), "u": u, "t": t, "gains": self._gains(gains)},
             par,
         )
+        if self.record.sticking:
+            self._warn_of_smooth_friction(v, par)
+        return a
 
     def constrained_dynamics(
         self,
@@ -260,6 +263,8 @@ class Model(
         """
         given = {"q": q, "v": v if z is None else self._with_states(v, z), "u": u, "t": t, "gains": self._gains(gains)}
         a, *constrained = self._call("forward_dynamics", "", given, par)
+        if self.record.sticking:
+            self._warn_of_smooth_friction(v, par)
         if not constrained:
             batch = a.shape[:-1]
             return a, np.zeros((*batch, 0)), np.zeros(batch)

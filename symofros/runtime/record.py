@@ -7,6 +7,9 @@ from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Literal, NamedTuple
 
+import numpy as np
+
+from symofros.base.arrays import Array
 from symofros.base.manifold import ManifoldKind
 from symofros.base.measures import Measures
 from symofros.errors import Problem, SymofrosError
@@ -305,6 +308,15 @@ class ModelRecord:
             self.refuse_states(f"a function of {size} values")
         end, nz = len(self.q_names if first == "nq" else self.v_names), len(self.state_names)
         return [*range(end - nz), *(range(end, total) if others else ())]
+
+    def smooth_friction(self, v: Array, par: Array) -> tuple[str, ...]:
+        """Notes on friction that sticks in runs and is smooth in functions, at speeds v (..., nv), parameters par."""
+        return tuple(
+            f"friction of '{one.name}' sticks in runs and is smooth here, by which the joint creeps from rest; with"
+            f" par={{'{self.par_names[one.mode]}': 2}} it is held"
+            for one in self.sticking
+            if np.any((par[..., one.mode] == 0.0) & (v[..., one.v] == 0.0))
+        )
 
     def refuse_sticking(self, what: str) -> None:
         """Refuse friction that sticks where nothing chooses its modes.

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import itertools
 import math
+import warnings
 from collections.abc import Sequence
 from functools import cache
 from pathlib import Path
@@ -431,6 +432,15 @@ def test_functions_say_what_they_take_for_friction_that_sticks() -> None:
     (note,) = sf.modes(model, [-0.02 * _G * math.sin(0.1) * -1.0]).notes
     assert note.startswith("friction of 's' sticks in runs and is smooth here") and "par={'s.mode': 2}" in note
     assert not sf.modes(model, [0.0], par={"s.mode": 2}).notes
+    rest: Any = ([0.0], [0.0], [])
+    for function in (model.forward_dynamics, model.constrained_dynamics, model.linearize):
+        with pytest.warns(sf.InconsistentModelWarning, match="friction of 's' sticks in runs(.|\n)*par={'s.mode': 2}"):
+            function(*rest)
+        with warnings.catch_warnings():
+            warnings.simplefilter("error")
+            function(*rest, par={"s.mode": 2})
+            function([0.0], [0.1], [])
+    assert model.forward_dynamics(*rest, par={"s.mode": 2}) == pytest.approx([0.0], abs=1e-15)
     with pytest.raises(sf.SymofrosError, match="friction of 's' carries 1.96 in motion only, up to 6(.|\n)*held="):
         sf.equilibrium(on_slide(sf.Friction(6.0, sticks=True), slope=0.1))
     with pytest.raises(sf.SymofrosError, match="rollout: friction that sticks"):

@@ -160,6 +160,8 @@ class DerivativeFunctions(FrameFunctions, StateFunctions):
             {"q": q, "v": v if z is None else self._with_states(v, z), "u": u, "t": t},
             par,
         )
+        if self.record.sticking:
+            self._warn_of_smooth_friction(v, par)
         speeds = np.asarray(self.by_name("v", v), dtype=np.float64)
         if outputs is None:
             return linear.state_matrices(self.record.segments, slopes, speeds)

@@ -2,10 +2,12 @@
 
 from __future__ import annotations
 
+import warnings
 from typing import Self
 
 import numpy as np
 
+from symofros.errors import InconsistentModelWarning
 from symofros.runtime.calls.kernel import Array, Numbers
 from symofros.runtime.functions import ArrayLike, Functions
 
@@ -40,6 +42,12 @@ class StateFunctions(Functions):
         shape = np.broadcast_shapes(speeds.shape[:-1], states.shape[:-1])
         parts = np.broadcast_to(speeds[..., :n], (*shape, n)), np.broadcast_to(states, (*shape, self.nz))
         return np.concatenate(parts, axis=-1) if self.nz else speeds
+
+    def _warn_of_smooth_friction(self, v: ArrayLike, par: ArrayLike | None) -> None:
+        """Say what a function takes for friction that sticks, of joints at rest without a mode."""
+        values = self._par if par is None else self.checked_parameters(par)
+        for note in self.record.smooth_friction(np.asarray(self.by_name("v", v), dtype=np.float64), np.asarray(values)):
+            warnings.warn(note, InconsistentModelWarning, stacklevel=3)
 
     def _at_states(self, z: ArrayLike | None) -> Array:
         """Speeds of `carried` at rest (..., nv + nz) where the states are z."""

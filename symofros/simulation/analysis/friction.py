@@ -16,17 +16,6 @@ _FLAT = 0.1
 _PEAK = 2.0
 
 
-def smooth_notes(model: Model, v: Array, par: ArrayLike | None) -> tuple[str, ...]:
-    """Notes on friction that sticks in runs and is smooth in functions, at speeds v (nv) and parameters par."""
-    values = model.parameter_values if par is None else model.checked_parameters(par)
-    return tuple(
-        f"friction of '{one.name}' sticks in runs and is smooth here, by which the joint creeps from rest; with"
-        f" par={{'{model.names.par[one.mode]}': 2}} it is held"
-        for one in model.record.sticking
-        if np.asarray(values)[one.mode] == 0.0 and v[one.v] == 0.0
-    )
-
-
 class FrictionCurve(NamedTuple):
     """Forces against the motion of one speed.
 

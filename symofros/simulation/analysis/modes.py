@@ -12,7 +12,6 @@ from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
 from symofros.simulation.analysis.force_states import kink_notes
-from symofros.simulation.analysis.friction import smooth_notes
 from symofros.simulation.analysis.imbalance import imbalance_notes
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 from symofros.simulation.analysis.rest_linearisation import matrix_at_rest
@@ -122,7 +121,9 @@ def modes(
     size = np.abs(s)
     damping = np.where(size > 0.0, -s.real / np.where(size > 0.0, size, 1.0), 0.0)
     shapes, z_shapes = _shapes(changes[: model.nv, order], changes[2 * model.nv :, order])
-    notes = bending_notes(bendings) + kink_notes(moving, q, v, state[2], par, t) + smooth_notes(model, state[1], par)
+    values = model.parameter_values if par is None else model.checked_parameters(par)
+    smooth = model.record.smooth_friction(state[1], np.asarray(values))
+    notes = bending_notes(bendings) + kink_notes(moving, q, v, state[2], par, t) + smooth
     if not balanced:
 
         def spectrum(q: Array, v: Array) -> Complex:
