@@ -309,7 +309,7 @@ class ModelRecord:
         end, nz = len(self.q_names if first == "nq" else self.v_names), len(self.state_names)
         return [*range(end - nz), *(range(end, total) if others else ())]
 
-    def smooth_friction(self, v: Array, par: Array) -> tuple[str, ...]:
+    def smooth_friction_notes(self, v: Array, par: Array) -> tuple[str, ...]:
         """Notes on friction that sticks in runs and is smooth in functions, at speeds v (..., nv), parameters par."""
         return tuple(
             f"friction of '{one.name}' sticks in runs and is smooth here, by which the joint creeps from rest; with"

@@ -1,5 +1,6 @@
 """The first commands that a newcomer types."""
 
+import errno
 import json
 import math
 import os
@@ -16,7 +17,7 @@ from typer.testing import CliRunner, Result
 
 import symofros as sf
 from symofros.__main__ import _COMMANDS, _command, app
-from symofros.commands.shared import shown
+from symofros.commands.shared import refuse, shown
 from symofros.simulation.progress import pace_of
 from tests.diagrams.files.cases import folder_with
 from tests.late import require
@@ -310,3 +311,14 @@ def test_names_with_any_characters_can_be_given_in_the_shell(tmp_path: Path) -> 
     assert last["left-hip"] == 0.5 and last["da=b"] == pytest.approx(0.25 - 10 * 0.01, rel=1e-12)
     refused = invoke(*command, "--input", "left-hip=-20*left-hip")
     assert refused.exit_code == 2 and "between backquotes: -20*`left-hip`" in refused.output
+
+
+@pytest.mark.parametrize("filename", ["y.csv", None])
+@pytest.mark.parametrize("number", [errno.ENOSPC, errno.EFBIG])
+def test_a_full_disk_is_not_called_a_matter_of_rights(
+    number: int, filename: str | None, capsys: pytest.CaptureFixture[str]
+) -> None:
+    """Of a picture there was the number of the error alone."""
+    assert refuse(OSError(number, os.strerror(number), filename)).exit_code == 2
+    said = capsys.readouterr().err
+    assert (filename or "a file") in said and "make room" in said and "rights" not in said

@@ -46,7 +46,9 @@ class StateFunctions(Functions):
     def _warn_of_smooth_friction(self, v: ArrayLike, par: ArrayLike | None) -> None:
         """Say what a function takes for friction that sticks, of joints at rest without a mode."""
         values = self._par if par is None else self.checked_parameters(par)
-        for note in self.record.smooth_friction(np.asarray(self.by_name("v", v), dtype=np.float64), np.asarray(values)):
+        for note in self.record.smooth_friction_notes(
+            np.asarray(self.by_name("v", v), dtype=np.float64), np.asarray(values)
+        ):
             warnings.warn(note, InconsistentModelWarning, stacklevel=3)
 
     def _at_states(self, z: ArrayLike | None) -> Array:

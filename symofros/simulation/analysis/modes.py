@@ -122,7 +122,7 @@ def modes(
     damping = np.where(size > 0.0, -s.real / np.where(size > 0.0, size, 1.0), 0.0)
     shapes, z_shapes = _shapes(changes[: model.nv, order], changes[2 * model.nv :, order])
     values = model.parameter_values if par is None else model.checked_parameters(par)
-    smooth = model.record.smooth_friction(state[1], np.asarray(values))
+    smooth = model.record.smooth_friction_notes(state[1], np.asarray(values))
     notes = bending_notes(bendings) + kink_notes(moving, q, v, state[2], par, t) + smooth
     if not balanced:
 
