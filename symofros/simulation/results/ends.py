@@ -116,7 +116,7 @@ ENDS: dict[int, End] = {
     Status.FLAT_RIM: End(
         "beyond theory",
         "a rim of a rigid contact lies on its plane, or a segment along its surface, to 0.6 degrees, and touches all"
-        " along; or a rim around a cylinder comes to touch at two points",
+        " along; or a rim comes to touch a cylinder at two points",
         "points along the rim or segment in its place, on which a body can lie: `points` without `rim` or `segment`;"
         " of capsules that lie along each other, at the ends of both",
     ),

@@ -100,7 +100,7 @@ def judge(maps: Maps) -> Verdict:
     installed |= dict.fromkeys((SAP, LAGGED), drake_contact.INSTALLED) | dict.fromkeys((EXUDYN, MUJOCO), True)
 
     def far(name: str, *engines: str) -> str:
-        return ", ".join(f"{who} {1e3 * finest(who, name):.1g} mm" for who in engines if installed[who])
+        return "; ".join(f"{who} {1e3 * finest(who, name):.2g} mm" for who in engines if installed[who])
 
     findings = (
         Finding("ours: speeds after a strike, against Routh's closed form", exact, 1e-9, reason="rounding"),
