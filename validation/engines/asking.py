@@ -10,13 +10,28 @@ from itertools import zip_longest
 from . import releases
 from .interface import EnginePlugin, Tree
 from .matrix import SEED, Judged, Truths, asked, judged, suited
-from .models import acting, flexible, hostile, kinds, loops, sensed, single, soft, spacecraft, stated, transformed
+from .models import (
+    acting,
+    covering,
+    flexible,
+    hostile,
+    kinds,
+    loops,
+    sensed,
+    single,
+    soft,
+    spacecraft,
+    stated,
+    transformed,
+)
 from .models.files.formats import formats
 from .models.files.readers import Reading
 from .workers import Job, Worker, registry
 
 # Seconds for each engine of the smoke tier, so that what is begun then ends within a minute.
 SMOKE = 50.0
+# Lots that scenes of features make.
+_PARTS = 5
 Questions = Mapping[str, Tree | Reading]
 # Name of a question -> names of the engines that it is put to.
 Asked = Mapping[str, Collection[str]]
@@ -31,7 +46,13 @@ def lots() -> list[Questions]:
     forms: dict[str, dict[str, Reading]] = {}
     for name, one in formats().items():
         forms.setdefault(one.form, {})[name] = one
-    return [*own, acting.driven(), acting.passive(), *trees, *forms.values()]
+    return [*_scenes(), *own, acting.driven(), acting.passive(), *trees, *forms.values()]
+
+
+def _scenes() -> list[Questions]:
+    """Scenes of features, as some lots that come first: each asks of many features."""
+    scenes = list(covering.trees().items())
+    return [dict(scenes[first::_PARTS]) for first in range(_PARTS)]
 
 
 def questions() -> dict[str, Tree | Reading]:

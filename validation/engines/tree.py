@@ -174,6 +174,7 @@ class Tree:
             functions that need it are asked of such a tree.
         stated: In which way of its own the engine states it, where that is not link by link: "a base",
             "Denavit-Hartenberg parameters" (`models.stated`).
+        features: Features of the scene that the tree stands for (`models.covering`).
     """
 
     name: str
@@ -191,6 +192,7 @@ class Tree:
     near: int = 0
     asked: str = ""
     stated: str = ""
+    features: tuple[str, ...] = ()
 
     @property
     def forces(self) -> frozenset[str]:

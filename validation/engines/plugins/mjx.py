@@ -4,12 +4,13 @@ from __future__ import annotations
 
 from dataclasses import replace
 
-from ..interface import STEP, Convention, Tree, Unsupported
+from ..interface import DOUBLE, STEP, Convention, Tree, Unsupported
+from ..models.covering import COVERING
 from ..truth.devices import DEVICES
 from ..truth.devices.bound import SOLVED
 from ..truth.devices.device import model
 from . import mujoco
-from .mujoco import elsewhere
+from .mujoco import covered, elsewhere
 from .mujoco.elements import BOUND, KINDS, SOFT_FORCES
 from .writing import copies
 from .writing.source import Source, SourcePlugin, Way
@@ -68,6 +69,15 @@ def answer(text, field, steps, **given):
     if not steps: data = jax.jit(mjx.forward)(model, data)
     for _ in range(steps): data = jax.jit(mjx.step)(model, data)
     return got(data, field)[places(field)].ravel()"""
+)
+# "MJX can be thought of as a function that is MuJoCo's, in JAX": docs/mjx.rst, "Feature parity".
+_STEPPED = (
+    f"{_STARTED}\n"
+    + """def stepped(m, given):
+    model = mjx.put_model(m)
+    data = mjx.make_data(m).replace(**{name: jax.numpy.array(values) for name, values in given.items()})
+    data = jax.jit(mjx.step)(model, data)
+    return lambda name: got(data, name)"""
 )
 # Devices that it says it does not support, and those whose options or steps would be compiled by themselves.
 _UNSUPPORTED = (
@@ -205,6 +215,8 @@ WAYS |= copies.of_model(WAYS, {"put_data": _PUT}, (*_FIELDS, "actuator_arms")) |
 
 def write(tree: Tree) -> Source | Unsupported:
     """The text that builds the tree in MuJoCo, and puts it into JAX."""
+    if tree.asked == COVERING:
+        return covered.write(tree, "mujoco-mjx", DOUBLE, _STEPPED)
     if tree.asked in DEVICES:
         return elsewhere.write(tree.asked, _DEVICES, tuple(_ANSWER.split("\n")))
     source = mujoco.write(tree)
@@ -231,10 +243,11 @@ PLUGIN = SourcePlugin(
         Convention("precision", "single unless JAX is told otherwise"),
     ),
     kinds=mujoco.PLUGIN.kinds,
-    ways=WAYS | _DEVICES,
+    ways=WAYS | _DEVICES | covered.ways(("scene_qfrc_spring", "scene_qfrc_damper", "scene_energy")),
     write=write,
     constraints=KINDS,
-    demands={name: mujoco.PLUGIN.demands[name] for name in (*_OFFERED, *_DRIVEN, *_HELD, *DEVICES, "a medium")},
+    demands={name: mujoco.PLUGIN.demands[name] for name in (*_OFFERED, *_DRIVEN, *_HELD, *DEVICES, "a medium")}
+    | {COVERING: "put_model, step"},
     statements=tuple(one for one in mujoco.PLUGIN.statements if "constraint" in one.functions),
     calls=4,
 )

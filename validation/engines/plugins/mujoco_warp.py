@@ -5,10 +5,11 @@ from __future__ import annotations
 from dataclasses import replace
 
 from ..interface import SINGLE, STEP, Convention, Tree, Unsupported
+from ..models.covering import COVERING
 from ..tree import SOFT_LIMITS
 from ..truth.devices import DEVICES
 from . import mujoco
-from .mujoco import elsewhere, rebuilt
+from .mujoco import covered, elsewhere, rebuilt
 from .mujoco.elements import KINDS, SOFT, SOFT_FORCES
 from .mujoco.forces import COPY, EXPLICIT, SPARSE
 from .newton import QUIET
@@ -49,6 +50,16 @@ def answer(text, field, steps, **given):
     if not steps: mjw.forward(model, data)
     for _ in range(steps): mjw.step(model, data)
     return got(data, field)[places(field)].ravel()"""
+)
+_STEPPED = (
+    f"{_STARTED}\n"
+    + """def stepped(m, given):
+    data = mjw.make_data(m, njmax=64, nconmax=8)
+    put(data, **given)
+    model = mjw.put_model(m)
+    mjw.forward(model, data)  # Velocity products are those of the call before (causes/stated).
+    mjw.step(model, data)
+    return lambda name: got(data, name)"""
 )
 _UNKNOWN = {name for name in DEVICES["drives"] if name.startswith("drive_pid")} | {
     name for name in DEVICES["transmissions"] if name.startswith("ball_oriented")
@@ -270,6 +281,8 @@ WAYS = {
 
 def write(tree: Tree) -> Source | Unsupported:
     """The text that builds the tree in MuJoCo, and puts it into Warp."""
+    if tree.asked == COVERING:
+        return covered.write(tree, "mujoco-warp", SINGLE, _STEPPED)
     if tree.asked in DEVICES:
         return elsewhere.write(tree.asked, _DEVICES, tuple(_ANSWER.split("\n")))
     source = mujoco.write(tree)
@@ -315,10 +328,11 @@ PLUGIN = SourcePlugin(
         Convention("precision", "single"),
     ),
     kinds=mujoco.PLUGIN.kinds,
-    ways=WAYS | _DEVICES,
+    ways=WAYS | _DEVICES | covered.ways(),
     write=write,
     constraints=KINDS,
-    demands={name: words for name, words in mujoco.PLUGIN.demands.items() if name not in _UNOFFERED},
+    demands={name: words for name, words in mujoco.PLUGIN.demands.items() if name not in _UNOFFERED}
+    | {COVERING: "put_model, step"},
     statements=tuple(one for one in mujoco.PLUGIN.statements if not one.functions.startswith("inverse_dynamics:")),
     roundoff=SINGLE,
     calls=1,

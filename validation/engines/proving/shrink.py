@@ -79,11 +79,17 @@ def size(value: Any) -> int:
         return sum(map(size, value))
     if is_dataclass(value):
         own = 100 if isinstance(value, Link) else 50 if isinstance(value, Joint) else 0
+        own += 50 * len(value.features) if isinstance(value, Tree) else 0
         return own + sum(size(getattr(value, item.name)) for item in fields(value))
     return 0
 
 
 def _simpler(case: Case) -> Iterator[Case]:
+    if case.tree.features:
+        for features in _fewer(case.tree.features):
+            yield replace(case, tree=replace(case.tree, features=features))
+        yield from _simpler_states(case)
+        return
     if not case.form:
         yield from _simpler_built(case)
         return
@@ -95,6 +101,14 @@ def _simpler(case: Case) -> Iterator[Case]:
                 yield replace(simpler, form=case.form, text=written)
         return
     yield from _simpler_states(case)
+
+
+def _fewer(features: tuple[str, ...]) -> Iterator[tuple[str, ...]]:
+    """Features of a scene without one of its chains, or without one feature."""
+    for number in dict.fromkeys(one.partition(": ")[0] for one in features if ": " in one):
+        yield tuple(one for one in features if not one.startswith(f"{number}: "))
+    for place in range(len(features)):
+        yield features[:place] + features[place + 1 :]
 
 
 def _simpler_built(case: Case) -> Iterator[Case]:

@@ -1,0 +1,76 @@
+"""Scenes of features: each pair is there, MuJoCo agrees with itself, and what is wrong is found and made small."""
+
+from __future__ import annotations
+
+from dataclasses import replace
+from itertools import combinations
+
+import numpy as np
+import pytest
+
+from tests.late import needs_extra
+from validation.engines.functions.devices import FIELDS
+from validation.engines.interface import DOUBLE, State, Tree
+from validation.engines.models.covering import CHAIN, OPTIONS, scenes, trees
+from validation.engines.plugins.mujoco import covered
+from validation.engines.plugins.writing.source import Source, SourceModel
+from validation.engines.proving.shrink import Case, smallest
+
+_ITSELF = "def stepped(m, given):\n    d = in_c(given)\n    return lambda name: getattr(d, name)"
+# Where springs are disabled, dampers are left out, too.
+_WRONG = """def stepped(m, given):
+    d = in_c(given)
+    if m.opt.disableflags & mj.mjtDisableBit.mjDSBL_SPRING: d.qfrc_passive[:] -= d.qfrc_damper
+    return lambda name: getattr(d, name)"""
+
+
+def _there() -> set[frozenset[str]]:
+    """Pairs of features that some scene has, first features included."""
+    pairs: set[frozenset[str]] = set()
+    for features in scenes():
+        options = [next((one for one in named if one in features), next(iter(named))) for named in OPTIONS.values()]
+        for number in "012":
+            own = [one[3:] for one in features if one.startswith(number)]
+            chain = [next((one for one in named if one in own), next(iter(named))) for named in CHAIN.values()]
+            pairs |= set(map(frozenset, combinations((*options, *chain), 2)))
+    return pairs
+
+
+def test_each_pair_of_features_is_in_some_scene() -> None:
+    """Apart from constraints where there are to be none."""
+    factors = [[one for one in named if one != "no chain"] for named in (*OPTIONS.values(), *CHAIN.values())]
+    wanted = {frozenset((a, b)) for one, other in combinations(factors, 2) for a in one for b in other}
+    missing = wanted - _there()
+    assert missing == {frozenset(("unconstrained", one)) for one in CHAIN["bound"] if one != "unbound"}
+
+
+def _excess(tree: Tree, function: str, lines: str) -> float:
+    """How far a field of an engine, made by lines, is beyond what roundings explain."""
+    source = covered.write(tree, "mujoco", DOUBLE, lines)
+    assert isinstance(source, Source)
+    numbers = np.random.default_rng(3).uniform(-1.0, 1.0, 7)
+    state = State(numbers, *(numbers[k : k + 6] for k in (0, 1)), numbers[:6][::-1].copy(), numbers[:6], numbers)
+    value = SourceModel(source, covered.ways()).call(function, state)
+    assert isinstance(value, np.ndarray)
+    return float(value) - 1.0
+
+
+def test_mujoco_agrees_with_itself() -> None:
+    """No field is beyond roundings."""
+    pytest.importorskip("mujoco", reason=needs_extra("engine-mjx", "mujoco"))
+    made = list(trees().values())[::4]
+    assert [tree.name for tree in made if _excess(tree, "scene_qvel", _ITSELF) != 0.0] == []
+    assert {_excess(made[0], name, _ITSELF) for name in FIELDS} == {0.0}
+
+
+def test_a_fault_of_two_features_is_found_and_made_small() -> None:
+    """Dampers without springs."""
+    pytest.importorskip("mujoco", reason=needs_extra("engine-mjx", "mujoco"))
+    red = [tree for tree in list(trees().values())[:30] if _excess(tree, "scene_qfrc_passive", _WRONG) > 0.0]
+    assert red and all("no spring" in tree.features for tree in red)
+    assert _excess(red[0], "scene_xpos", _WRONG) == 0.0
+    small = smallest(Case(red[0], ()), lambda case: _excess(case.tree, "scene_qfrc_passive", _WRONG) > 0.0)
+    (joint,) = (one for one in small.tree.features if one.endswith(tuple(CHAIN["joint"])))
+    (damped,) = set(small.tree.features) - {joint, "no spring"}
+    assert "damper" in damped or "tendon" in damped
+    assert _excess(replace(small.tree, features=(joint, damped)), "scene_qfrc_passive", _WRONG) == 0.0
