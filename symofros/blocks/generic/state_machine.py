@@ -85,6 +85,7 @@ class StateMachine(Block):
 
     def __post_init__(self) -> None:
         """States that are reached, formulas that can be read, names that are there."""
+        self._refuse_other_types()
         if not 0 < len(self.machine_states) <= MAX_STATES:
             raise refuse(self.name, "states", f"{len(self.machine_states)} of them", f"1 to {MAX_STATES}", "state some")
         for name, value in (*self.constants.items(), *self.outputs.items()):
@@ -104,6 +105,20 @@ class StateMachine(Block):
         for name in self.units:
             known_name(self.name, "input or output", name, {*inputs, *self.outputs})
         self._refuse_unreachable()
+
+    def _refuse_other_types(self) -> None:
+        """Refuse states and transitions that are something else."""
+        if not isinstance(self.machine_states, Mapping):
+            rule, remedy = "a mapping: name -> MachineState", "machine_states={'idle': MachineState(during={'y': 0})}"
+            raise refuse(self.name, "machine_states has no names", repr(self.machine_states), rule, remedy)
+        for name, state in self.machine_states.items():
+            if not isinstance(state, MachineState):
+                rule, remedy = "a MachineState", "MachineState(during={'y': 0})"
+                raise refuse(self.name, f"state '{name!s:.40}' is none", repr(state), rule, remedy)
+        for way in self.transitions:
+            if not isinstance(way, Transition):
+                rule, remedy = "a Transition", "Transition('idle', 'busy', 'x - 1')"
+                raise refuse(self.name, "a transition is none", repr(way), rule, remedy)
 
     def _refuse_unreachable(self) -> None:
         """Refuse states that no transitions lead to."""

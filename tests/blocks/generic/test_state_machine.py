@@ -84,6 +84,9 @@ def test_time_in_a_state_is_counted_without_drift() -> None:
     ("changes", "words"),
     [
         ({"machine_states": {}}, "1 to 64"),
+        ({"machine_states": ["idle"]}, "a mapping"),
+        ({"machine_states": {"idle": {"during": {"y": 0.0}}}}, "state 'idle' is none"),
+        ({"transitions": (("idle", "push", "u"),)}, "a transition is none"),
         ({"transitions": WAYS[:1]}, "state 'wait' is never entered"),
         ({"transitions": (*WAYS, Transition("idle", "pushh", "u"))}, "did you mean 'push'"),
         ({"first": "none"}, "no state 'none'"),
