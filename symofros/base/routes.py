@@ -27,6 +27,9 @@ TIE = 1.05
 COUPLED = 15
 # Entries of the factors of M times columns, up to which derivatives are solved for by generated code.
 MOST_STEPS = 96000
+# Speeds coupled on average, as above, from which on derivatives of the acceleration take less by sweeps than by factors
+# (code.md, section 2), and the most changes of forces that the routine's tables count.
+SWEPT, MOST_CHANGES = 15, 32000
 # Products of full matrices that one by tables may take the time of, with margin for what is gained by neither.
 TABLE_PRODUCT = 8
 # Packs are judged in functions of up to SHORT operations; longer ones gain on AVX2, and lose 4 % at most on AVX-512.
@@ -154,6 +157,16 @@ _quantity(
 _quantity(
     "derivatives of the acceleration",
     _BY_ARTICULATED,
+    Route(
+        "sweeps",
+        f"by q, v and u, where speeds are coupled with {SWEPT} and more on average on their way to the base, unless "
+        "factors are asked for",
+        "as the acceleration by articulated bodies",
+        "linear.md, 10, (31)-(35)",
+        "no beam deforms, no motion is prescribed, and all rotors are borne by the base",
+        can=lambda f: f["elastic_beams"] == f["moving_rotors"] == f["prescribed_speeds"] == 0,
+        when=lambda f: f["by_state"] == 1 and f["coupled_speeds"] >= SWEPT and f["direct_changes"] <= MOST_CHANGES,
+    ),
     Route(
         "factors",
         f"entries of the factors of M times columns are at most {MOST_STEPS}",

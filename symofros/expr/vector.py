@@ -109,6 +109,9 @@ class Mat3:
         e = self.entries
         return Mat3(self.g, (e[0], e[3], e[6], e[1], e[4], e[7], e[2], e[5], e[8]))
 
+    def __add__(self, other: Mat3) -> Mat3:
+        return Mat3(self.g, tuple(self.g.add(a, b) for a, b in zip(self.entries, other.entries, strict=True)))
+
     def times(self, v: Vec3) -> Vec3:
         """Matrix times vector."""
         return Vec3(self.g, self.row(0).dot(v), self.row(1).dot(v), self.row(2).dot(v))

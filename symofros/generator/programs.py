@@ -137,10 +137,11 @@ class ProgramBuilder:
         return choice, replace(program, functions=(replace(program.functions[0], choices=(choice,)),))
 
     def _optimised(self, requests: Sequence[Request], trees: Choice) -> Program:
-        # Derivatives have many columns, which favour the factors: articulated bodies where they are asked for by name.
+        # Reverse mode, and derivatives of short trees, favour the factors: articulated bodies are asked for by name.
         asked = self._options.forward_dynamics
         under_constraints = self._options.constraints.replace("multipliers", "")
-        methods = Methods(trees, "articulated" if asked == "articulated" else "", under_constraints)
+        slopes = "articulated" if asked == "articulated" else ""
+        methods = Methods(trees, slopes, under_constraints, asked == "factors")
         return run_passes(form_program(self.equations(), requests, methods))
 
 

@@ -59,6 +59,8 @@ def test_each_case_takes_its_route_and_a_contrasting_model_another(
     function, name, options = CASES[row]
     if row[1] == "routine":
         monkeypatch.setattr(routes, "MOST_STEPS", -1)
+    if row[1] == "sweeps":
+        monkeypatch.setattr(routes, "SWEPT", -1)
     choice = choices_of(sf.compile(system(name), sf.Options(**options)), function)[row[0]]  # type: ignore[arg-type]
     assert choice.method == row[1] and choice.route in ROWS
     assert choice.asked == bool(options and row[0] != "derivatives of constrained motion")
@@ -115,6 +117,7 @@ MARKERS: dict[str, set[tuple[str, str]]] = {
         ("derivatives of the acceleration", "routine"),
         ("derivatives of constrained motion", "multipliers"),
     },
+    r"\bsym_respond\(": {("derivatives of the acceleration", "sweeps")},
     r"\bsym_hessian\(": {("second derivatives of the motion", "multipliers")},
     r"#if SYM_PART < 8": {("values by vectors", "by processor")},
     r"\bsym_pack \w+ =": {("values by vectors", "packs"), ("values by vectors", "by processor")},

@@ -12,6 +12,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from reference_models.rigid.chain import chain
 from symofros.compiler import Compilation
 from tests.late import require
 from tests.models import sampled, state_of, system
@@ -147,3 +148,39 @@ def test_the_blocked_solver_matches_generated_elimination(
     ):
         # Elimination in two orders: some units in the last place of the largest entry, times the condition of M.
         np.testing.assert_allclose(ours, theirs, rtol=0.0, atol=1e-11 * max(1.0, np.abs(theirs).max()))
+
+
+@pytest.mark.parametrize("backend", ["c", "interpreter", "tape"])
+@pytest.mark.parametrize("name", sampled(("heavy_top", "car", "random_tree4", "spdm", "mss"), ("heavy_top", "car")))
+def test_sweeps_match_generated_elimination(
+    name: str, backend: str, monkeypatch: pytest.MonkeyPatch, tmp_path: Path
+) -> None:
+    """Long trees go by sweeps over their speeds: here with branches, free and ball joints, and springs."""
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))  # What is kept there was made by a generator as it is.
+    generated = sf.compile(MODELS[name], sf.Options(backend=backend))  # type: ignore[arg-type]
+    q, v = generated.random_state(np.random.default_rng(12))
+    u = np.linspace(-1.0, 1.0, generated.nu)
+    expected = generated.forward_dynamics_derivatives(q, v, u)
+    monkeypatch.setattr("symofros.base.routes.SWEPT", -1)
+    swept = sf.compile(MODELS[name], sf.Options(backend=backend))  # type: ignore[arg-type]
+    derivatives = swept.forward_dynamics_derivatives(q, v, u)
+    assert swept.routes["forward_dynamics_derivatives"][0].method == "sweeps"
+    for ours, theirs in zip(derivatives, expected, strict=True):
+        # Another elimination: some units in the last place of the largest entry, times the condition of M.
+        np.testing.assert_allclose(ours, theirs, rtol=0.0, atol=1e-11 * max(1.0, np.abs(theirs).max(initial=0.0)))
+
+
+def test_derivatives_of_a_long_chain_are_those_by_differences() -> None:
+    """By sweeps, without an option: by q and v against central differences, by u against M."""
+    m = sf.compile(chain(32, symbolic=False), sf.Options(backend="interpreter"))
+    assert m.routes["forward_dynamics_derivatives"][0].method == "sweeps"
+    q, v = m.random_state(np.random.default_rng(13))
+    u, h = np.zeros(m.nu), 5e-7
+    by_q, by_v, by_u = m.forward_dynamics_derivatives(q, v, u)
+    for k in (0, 15, 31):
+        e = h * np.eye(m.nv)[k]
+        change = m.forward_dynamics(q + e, v, u) - m.forward_dynamics(q - e, v, u)
+        np.testing.assert_allclose(by_q[:, k], change / (2 * h), rtol=0, atol=1e-6 * np.abs(by_q).max())
+        change = m.forward_dynamics(q, v + e, u) - m.forward_dynamics(q, v - e, u)
+        np.testing.assert_allclose(by_v[:, k], change / (2 * h), rtol=0, atol=1e-6 * np.abs(by_v).max())
+    np.testing.assert_allclose(by_u @ m.mass_matrix(q), np.eye(m.nv), rtol=0, atol=1e-6)

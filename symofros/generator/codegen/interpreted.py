@@ -14,6 +14,7 @@ from symofros.expr.program import Function, Program, Solver
 from symofros.runtime.calls.kernel import DEFAULT_OPTIONS, Array, BatchOptions, Kernel, Numbers, Signature
 from symofros.runtime.constrained import constrained, motion, project, solve
 from symofros.runtime.instants import Motion, Operands, find_instants
+from symofros.runtime.responses import respond
 
 # Places in a step at which formulas of the state are looked at, and most change of an operand between two of them by
 # which what it makes is seen.
@@ -170,6 +171,11 @@ class InterpretedKernel:
         derivatives = zip(*(_derivatives(m, g, list(of), measures) for m, g, of in states), strict=True)
         return [np.array(values) for values in derivatives]
 
+    def _respond(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
+        """Derivatives of the acceleration of a rigid tree."""
+        steps, fields, direct = outputs
+        return respond(steps, fields, direct, solver.tables, [shape[1] for _, shape in solver.returns])
+
     def _transpose(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
         """Vector-Jacobian products of accelerations and multipliers, by the adjoint of the equations of motion."""
         at, _ = self._with_adjoint(solver, named, outputs)
@@ -213,6 +219,7 @@ _TWINS: dict[str, Callable[[InterpretedKernel, Solver, Mapping[str, Array], list
     "null_space": InterpretedKernel._motion,
     "project": InterpretedKernel._project,
     "differentiate": InterpretedKernel._differentiate,
+    "responses": InterpretedKernel._respond,
     "transpose": InterpretedKernel._transpose,
     "hessian": InterpretedKernel._hessian,
 }

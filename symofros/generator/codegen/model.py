@@ -97,7 +97,7 @@ def model_text(
         generator=generator,
         hash=record.hash,
         operations=operations_text(program),
-        functions="\n\n".join([*_called(texts, vectors), *routines(program, bool(sparse)), *texts]),
+        functions="\n\n".join([*_called(texts, vectors, packs), *routines(program, bool(sparse)), *texts]),
         tables="\n".join(
             [*(row.tables for row in rows), _function_table(name, rows), *_lane_table(name, rows, vectors)]
         ),
@@ -125,12 +125,12 @@ def model_text(
     return ModelText(code, {(f.name, f.frame): row.choices for f, row in zip(program.functions, rows, strict=True)})
 
 
-def _called(texts: Sequence[str], vectors: LaneOptions | None) -> Iterator[str]:
+def _called(texts: Sequence[str], vectors: LaneOptions | None, packs: Packs) -> Iterator[str]:
     """Definitions of the routines that the texts call: trigonometry, lanes, packs, and vectors of limbs."""
     yield from trigonometry.routines(texts, vectors is not None)
     if vectors is not None:
         yield lanes.routines(vectors)
-    if any("sym_pack " in text for text in texts):
+    if any("sym_pack " in text or (packs != "none" and "sym_respond(" in text) for text in texts):
         yield native_text("model/pack.c.in")
     if any(f"{kind} " in text for kind in TYPES.values() for text in texts):
         yield native_text("model/limbs.c.in")

@@ -26,6 +26,7 @@ ROUTINES: dict[str, tuple[str, ...]] = {
     "motion": ("motion",),
     "project": ("dense", "row_sizes", "null_space_factors", "kkt", "constrained", "project"),
     "differentiate": ("dense", "row_sizes", "null_space_factors", "kkt", "differentiate"),
+    "responses": ("responses",),
     "adjoint": ("dense", "row_sizes", "null_space_factors", "kkt", "adjoint"),
     "transpose": ("dense", "row_sizes", "null_space_factors", "kkt", "adjoint", "transpose"),
     "hessian": ("dense", "row_sizes", "null_space_factors", "kkt", "adjoint", "hessian"),
@@ -95,7 +96,7 @@ def with_solver(
     body, work = _CALLS[solver.routine](c_name, function, needs, sparse)
     body = [*_tables(solver, sparse), *body]
     code = "\n".join([terms.code, *(part.code for part in parts), head, *body, "}"])
-    return FunctionText(code, work, max(terms, *parts, key=lambda text: len(text.code)).choices)
+    return FunctionText(code, work, max([terms, *parts], key=lambda text: len(text.code)).choices)
 
 
 def routine_work(function: Function, solver: Solver, needs: int) -> int:
@@ -104,17 +105,17 @@ def routine_work(function: Function, solver: Solver, needs: int) -> int:
 
 
 def _tables(solver: Solver, sparse: SparseSystem | None) -> list[str]:
-    """The tables of a routine as the constant `measures`; C has no empty arrays."""
-    names = ("group", "unit", "speed")
-    patterns = "NULL" if sparse is None else "&sparse"
-    return [
-        *(
-            f"    static const short {name}[] = {{{', '.join(map(str, table or (0,)))}}};"
-            for name, table in zip(names, solver.tables, strict=True)
-        ),
-        *(sparse.tables() if sparse is not None else ()),
-        f"    static const sym_measures measures = {{{', '.join(names)}, {patterns}}};",
+    """The tables of a routine, most as the constant `measures`; C has no empty arrays."""
+    names = ("speeds", "begin", "entry") if solver.routine == "responses" else ("group", "unit", "speed")
+    tables = [
+        f"    static const short {name}[] = {{{', '.join(map(str, table or (0,)))}}};"
+        for name, table in zip(names, solver.tables, strict=True)
     ]
+    if solver.routine == "responses":
+        return tables
+    patterns = "NULL" if sparse is None else "&sparse"
+    tables += sparse.tables() if sparse is not None else ()
+    return [*tables, f"    static const sym_measures measures = {{{', '.join(names)}, {patterns}}};"]
 
 
 def _solving(n: int, m: int, sparse: SparseSystem | None) -> int:
@@ -187,6 +188,14 @@ def _differentiate(c_name: str, function: Function, needs: int, sparse: SparseSy
     return lines, work_size("SYM_DIFFERENTIATE_WORK", n, m) + solving + needs
 
 
+def _responses(c_name: str, function: Function, needs: int, sparse: SparseSystem | None) -> tuple[list[str], int]:
+    """The state -> derivatives of a of a rigid tree."""
+    n, nu = function.returns[-1][1]
+    direct = len(function.outputs[2].edges)
+    lines = [f"    sym_respond({n}, {nu}, speeds, begin, entry, {c_name}_terms, in, out, work);"]
+    return lines, work_size("SYM_RESPONSES_WORK", n, direct) + needs
+
+
 def _transpose(c_name: str, function: Function, needs: int, sparse: SparseSystem | None) -> tuple[list[str], int]:
     """The state and cotangents of a and lam -> vector-Jacobian products."""
     m, n = function.outputs[2].shape
@@ -230,6 +239,7 @@ _CALLS: dict[str, Callable[[str, Function, int, SparseSystem | None], tuple[list
     "null_space": _null_space,
     "project": _project,
     "differentiate": _differentiate,
+    "responses": _responses,
     "transpose": _transpose,
     "hessian": _hessian,
 }

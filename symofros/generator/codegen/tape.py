@@ -70,7 +70,7 @@ def _routine(program: Program, function: Function, solver: Solver, terms: Tape) 
     """The arguments of the routine that finishes a function; matrices are full."""
     parts = [_tape(program.graph, ("pre", *part.inputs), part.outputs, program.pre) for part in solver.parts]
     by_name = {output.name: output for output in function.outputs}
-    nc, nv = by_name["G"].shape
+    nc, nv = by_name["G"].shape if "G" in by_name else (0, by_name["steps"].shape[0])
     nq, extra = 0, 0
     columns: tuple[int, ...] = ()
     match solver.routine:
@@ -82,6 +82,8 @@ def _routine(program: Program, function: Function, solver: Solver, terms: Tape) 
         case "differentiate":
             columns = tuple(shape[1] for _, shape in function.returns)
             extra = len(columns)
+        case "responses":
+            extra = function.returns[-1][1][1]
         case "hessian":
             extra = function.returns[0][1][0]
     work = routine_work(function, solver, max(tape.registers for tape in (terms, *parts)))

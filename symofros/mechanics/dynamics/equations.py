@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Callable, Sequence
-from functools import cached_property
+from functools import cached_property, partial
 
 from symofros.base.routes import Choice
 from symofros.expr.edges import ZERO, Edge
@@ -14,12 +14,18 @@ from symofros.mechanics.dynamics.centroidal import central_mass, centroidal_mome
 from symofros.mechanics.dynamics.coriolis import coriolis_matrix
 from symofros.mechanics.dynamics.derivatives import recursion
 from symofros.mechanics.dynamics.derivatives.differentiation import by_configuration, by_inputs
+from symofros.mechanics.dynamics.derivatives.responses import Responses, responses
 from symofros.mechanics.dynamics.energy import kinetic_energy, potential_energy
 from symofros.mechanics.dynamics.equations_of_motion import EquationsOfMotion
-from symofros.mechanics.dynamics.forward.articulated import articulated_response, balances_by_link
+from symofros.mechanics.dynamics.forward.articulated import (
+    articulated_joints,
+    articulated_response,
+    balances_by_link,
+)
 from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import Matrix
 from symofros.mechanics.dynamics.momentum import coadjoint, momentum_rate
+from symofros.mechanics.topology.tree import coupled_speeds
 
 
 class Equations(EquationsOfMotion):
@@ -113,6 +119,33 @@ class Equations(EquationsOfMotion):
     def articulated_response(self, change: Sequence[Edge]) -> list[Edge]:
         """Change of the acceleration where `balances_by_link` changes by so much (nv)."""
         return articulated_response(self.kinematics, self._bare_inertias, self.rotors, change)
+
+    @property
+    def response_figures(self) -> dict[str, float | Callable[[], float]]:
+        """Figures by which methods of the derivatives of the acceleration apply."""
+        return {
+            **self.route_figures,
+            **recursion.figures_of(self.kinematics, self.rotors),
+            "prescribed_speeds": self.nu - self.efforts,
+            "coupled_speeds": partial(coupled_speeds, self.tree),
+        }
+
+    @cached_property
+    def responses(self) -> Responses:
+        """What the derivatives of the acceleration of a rigid tree by articulated bodies consist of."""
+        joints = articulated_joints(self.kinematics, self._bare_inertias, self.rotors)
+        a = self._held(self.articulated)
+        return responses(self.kinematics, self._bare_inertias, joints, a, self.gravity)
+
+    def direct_slopes(self, name: str) -> Matrix:
+        """Derivative "by_q", "by_v" or "by_u" of the balance, less what links do that move (nv rows)."""
+        slopes: Matrix = getattr(self, name)(self._less_applied([ZERO] * self.nv))
+        if name != "by_q":
+            return slopes
+        return [
+            [self.g.add(x, y) for x, y in zip(row, turned, strict=True)]
+            for row, turned in zip(slopes, self.responses.turned, strict=True)
+        ]
 
     @cached_property
     def residual_by_u(self) -> Matrix:

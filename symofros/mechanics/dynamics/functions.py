@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain
@@ -42,11 +43,13 @@ class Methods(NamedTuple):
         trees: Route of the acceleration of trees.
         slopes: Method asked for of its first derivatives and adjoints: "articulated", or "" for none.
         constraints: Method asked for under constraints, as in Options.
+        factors: Whether factors of M are asked for.
     """
 
     trees: Choice = taken("acceleration of trees", "factors")
     slopes: str = ""
     constraints: str = ""
+    factors: bool = False
 
 
 _DEFAULT = Methods()
@@ -207,10 +210,16 @@ def _forward_slopes(e: Equations, row: ModelFunction, methods: Methods, known: M
     if e.constraints:
         return _forward_slopes_by_routine(e, row, choose("derivatives of constrained motion"), known)
     columns = sum(array.sizes(known)[1] for array in row.outputs)
-    steps = {} if methods.slopes else {"elimination_steps": e.factors.entries * columns}
-    choice = choose("derivatives of the acceleration", steps | e.route_figures, methods.slopes)
+    figures = e.response_figures | {
+        "elimination_steps": lambda: e.factors.entries * columns,
+        "by_state": not methods.factors and [array.name for array in row.outputs] == ["by_q", "by_v", "by_u"],
+        "direct_changes": lambda: len(_direct_changes(e, row)),
+    }
+    choice = choose("derivatives of the acceleration", figures, methods.slopes)
     if choice.method == "articulated":
         return replace(_articulated_slopes(e, row, known), choices=(choice,))
+    if choice.method == "sweeps":
+        return _forward_slopes_by_sweeps(e, row, choice, known)
     if choice.method == "routine":
         return _forward_slopes_by_routine(e, row, choice, known)
     outputs = []
@@ -230,6 +239,30 @@ def _articulated_slopes(e: Equations, row: ModelFunction, known: Mapping[str, in
         rows = list(zip(*columns, strict=True)) if columns else [()] * e.nv
         outputs.append(_matrix(array.name, (e.nv, len(columns)), rows))
     return Function(row.name, "", row.inputs, tuple(outputs))
+
+
+def _forward_slopes_by_sweeps(e: Equations, row: ModelFunction, choice: Choice, known: Mapping[str, int]) -> Function:
+    """The same by what sweeps over the speeds need of each (linear.md, eqs. 31-35), for a routine."""
+    changes = _direct_changes(e, row)
+    begin = [bisect_left(changes, (k,)) for k in range(e.nv + 1)]
+    terms = (
+        _matrix("steps", (e.nv, 16), e.responses.steps),
+        _matrix("fields", (e.nv, 30), e.responses.fields),
+        _vector("direct", [edge for *_, edge in changes]),
+    )
+    places = tuple(place for _, by, column, _ in changes for place in (by, column))
+    tables = e.responses.parents + e.responses.firsts, tuple(begin), places
+    solver = Solver("responses", _returns(row, known), (), tables)
+    return Function(row.name, "", row.inputs, terms, solver, choices=(choice,))
+
+
+def _direct_changes(e: Equations, row: ModelFunction) -> list[tuple[int, int, int, Edge]]:
+    """Changes of forces at held motions that are not zero in every state: row, which derivative, column, edge."""
+    changes = []
+    for by, array in enumerate(row.outputs):
+        for k, of_row in enumerate(e.direct_slopes(array.name)):
+            changes += [(k, by, column, edge) for column, edge in enumerate(of_row) if edge != ZERO]
+    return sorted(changes)
 
 
 def _forward_slopes_by_routine(e: Equations, row: ModelFunction, choice: Choice, known: Mapping[str, int]) -> Function:

@@ -27,7 +27,7 @@ class Flow:
     K: Mat3
 
     def __add__(self, other: Flow) -> Flow:
-        return Flow(self.P + other.P, _sum(self.K, other.K))
+        return Flow(self.P + other.P, self.K + other.K)
 
     def about_axes(self) -> Mat3:
         """tr(K) 1 - K."""
@@ -56,13 +56,18 @@ def composite_flows(
     kinematics: TreeKinematics, inertias: Sequence[LinkInertia], motions: Sequence[LinkMotion], velocities: list[Vec3]
 ) -> list[Flow]:
     """Flow of the composite body of each link (eq. 18)."""
-    flows = [_own_flow(*of_link) for of_link in zip(inertias, motions, velocities, strict=True)]
+    flows = own_flows(inertias, motions, velocities)
     for i, link in reversed(list(enumerate(kinematics.links))):
         if link.parent != BASE:
             P = link.R_AL.apply(flows[i].P)
-            K = _sum(link.R_AL.conjugate_any(flows[i].K), _dyad(P, link.p_AL))
+            K = link.R_AL.conjugate_any(flows[i].K) + _dyad(P, link.p_AL)
             flows[link.parent] = flows[link.parent] + Flow(P, K)
     return flows
+
+
+def own_flows(inertias: Sequence[LinkInertia], motions: Sequence[LinkMotion], velocities: Sequence[Vec3]) -> list[Flow]:
+    """Flow of each link by itself (eq. 17)."""
+    return [_own_flow(*of_link) for of_link in zip(inertias, motions, velocities, strict=True)]
 
 
 def _own_flow(inertia: LinkInertia, motion: LinkMotion, velocity: Vec3) -> Flow:
@@ -71,13 +76,9 @@ def _own_flow(inertia: LinkInertia, motion: LinkMotion, velocity: Vec3) -> Flow:
     two = g.constant(2.0)
     m, S, E = g.mul(two, inertia.m), inertia.mp_LLcm.scaled(two), inertia.second_moment().matrix()
     turning = [w.cross(E.column(j).scaled(two)) for j in range(3)]
-    return Flow(velocity.scaled(m) + w.cross(S), _sum(Mat3.from_columns(g, turning), _dyad(velocity, S)))
+    return Flow(velocity.scaled(m) + w.cross(S), Mat3.from_columns(g, turning) + _dyad(velocity, S))
 
 
 def _dyad(a: Vec3, b: Vec3) -> Mat3:
     """A b^T."""
     return Mat3(a.g, tuple(a.g.mul(x, y) for x in a for y in b))
-
-
-def _sum(A: Mat3, B: Mat3) -> Mat3:
-    return Mat3(A.g, tuple(A.g.add(x, y) for x, y in zip(A.entries, B.entries, strict=True)))

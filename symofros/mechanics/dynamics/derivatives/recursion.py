@@ -37,11 +37,15 @@ from symofros.mechanics.topology.tree import BASE
 
 def route(kinematics: TreeKinematics, rotors: Sequence[MovingRotor]) -> Choice:
     """Choice of the route of derivatives: recursion if no beam deforms and no rotor's spin acts on a moving link."""
-    figures = {
+    return choose("derivatives of inertia forces", figures_of(kinematics, rotors))
+
+
+def figures_of(kinematics: TreeKinematics, rotors: Sequence[MovingRotor]) -> dict[str, float]:
+    """Figures by which recursions over links apply."""
+    return {
         "elastic_beams": sum(beam.tip is not None for beam in kinematics.beams),
         "moving_rotors": sum(rotor.carrier != BASE for rotor in rotors),
     }
-    return choose("derivatives of inertia forces", figures)
 
 
 @dataclass(frozen=True)

@@ -120,6 +120,18 @@ def balances_by_link(
     return wrenches + [g.sub(force, applied) for force, applied in zip(forces, Q, strict=True)]
 
 
+def articulated_joints(
+    kinematics: TreeKinematics, inertias: list[LinkInertia], rotors: list[MovingRotor]
+) -> list[FreeJoint]:
+    """Each joint of a rigid tree with everything beyond it articulated, base to tip."""
+    g, zero = kinematics.g, Vec3(kinematics.g)
+    still = [Acceleration(zero, zero) for _ in kinematics.links]
+    wrenches = [no_wrench(g) for _ in kinematics.links]
+    links = [*map(ArticulatedBody, _inertias(kinematics, inertias), wrenches)]
+    joints = _tip_to_base(kinematics, links, rotors, _Driven(wrenches, still, [ZERO] * kinematics.nv, still[0]))
+    return [joint for joint in joints if joint is not None]
+
+
 def articulated_response(
     kinematics: TreeKinematics, inertias: list[LinkInertia], rotors: list[MovingRotor], change: Sequence[Edge]
 ) -> list[Edge]:

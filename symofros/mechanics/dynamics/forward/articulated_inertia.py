@@ -51,9 +51,7 @@ class ArticulatedInertia:
         return [[*A.row(i), *B.row(i)] for i in range(3)] + [[*B.column(i), *C.row(i)] for i in range(3)]
 
     def __add__(self, other: ArticulatedInertia) -> ArticulatedInertia:
-        g = self.B.g
-        B = tuple(g.add(a, b) for a, b in zip(self.B.entries, other.B.entries, strict=True))
-        return ArticulatedInertia(self.A + other.A, Mat3(g, B), self.C + other.C)
+        return ArticulatedInertia(self.A + other.A, self.B + other.B, self.C + other.C)
 
     def times(self, x: Acceleration) -> Wrench:
         """The wrench of an acceleration."""

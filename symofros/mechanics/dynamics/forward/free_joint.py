@@ -68,7 +68,8 @@ class FreeJoint:
     ) -> None:
         self.in_parent = in_parent
         self._g = g
-        self._ratios: list[list[Edge]] = []
+        self.ratios: list[list[Edge]] = []
+        self.inverses: list[Edge] = []
         self._free: list[Edge] = []
         rows = body.inertia.rows() + [[*U_k.f, *U_k.n, *D[k]] for k, U_k in enumerate(U)]
         right = [*body.bias.f, *body.bias.n, *d]
@@ -77,12 +78,13 @@ class FreeJoint:
             if pivot == ZERO:
                 raise SingularMatrixError(v + k - 6)
             inverse = g.div(ONE, pivot)
+            self.inverses.insert(0, inverse)
             ratios = [_quotient(g, edge, pivot, inverse) for edge in row[:k]]
             for i in range(k):
                 for j in range(i + 1):
                     rows[i][j] = g.sub(rows[i][j], _product(g, (row[i], ratios[i]), (row[j], ratios[j])))
                 right[i] = g.sub(right[i], g.mul(ratios[i], right[k]))
-            self._ratios.insert(0, ratios)
+            self.ratios.insert(0, ratios)
             self._free.insert(0, -g.mul(right[k], inverse))
         wrench = Wrench(Vec3(g, *right[:3]), Vec3(g, *right[3:6]))
         self.body = ArticulatedBody(ArticulatedInertia.of_rows(g, rows), wrench)
@@ -90,7 +92,7 @@ class FreeJoint:
     def rates(self, x: Acceleration) -> list[Edge]:
         """Rates v' of the joint's speeds at an acceleration x' of the body (eq. 45)."""
         known = [*x.a, *x.alpha]
-        for ratios, free in zip(self._ratios, self._free, strict=True):
+        for ratios, free in zip(self.ratios, self._free, strict=True):
             products = [-self._g.mul(a, b) for a, b in zip(ratios, known, strict=True)]
             known.append(_sum_in_pairs(self._g, [free, *products]))
         return known[6:]
