@@ -8,13 +8,14 @@ from functools import cached_property, partial
 from symofros.base.routes import Choice
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.ops import STOP_GRADIENT
+from symofros.mechanics.beams.theories import theory_of
 from symofros.mechanics.dynamics.applied.forces import stored_energy
 from symofros.mechanics.dynamics.bodies.inertia import inertia_inputs
 from symofros.mechanics.dynamics.centroidal import central_mass, centroidal_momentum, centroidal_rate
 from symofros.mechanics.dynamics.coriolis import coriolis_matrix
 from symofros.mechanics.dynamics.derivatives import recursion
 from symofros.mechanics.dynamics.derivatives.differentiation import by_configuration, by_inputs
-from symofros.mechanics.dynamics.derivatives.responses import Responses, responses
+from symofros.mechanics.dynamics.derivatives.responses import DirectChange, Responses, responses
 from symofros.mechanics.dynamics.energy import kinetic_energy, potential_energy
 from symofros.mechanics.dynamics.equations_of_motion import EquationsOfMotion
 from symofros.mechanics.dynamics.forward.articulated import (
@@ -120,14 +121,21 @@ class Equations(EquationsOfMotion):
         """Change of the acceleration where `balances_by_link` changes by so much (nv)."""
         return articulated_response(self.kinematics, self._bare_inertias, self.rotors, change)
 
-    @property
-    def response_figures(self) -> dict[str, float | Callable[[], float]]:
-        """Figures by which methods of the derivatives of the acceleration apply."""
+    def articulated_slopes(self, name: str) -> Matrix:
+        """Derivative "by_q", "by_v", "by_u" or "by_par" of the acceleration, by articulated bodies (nv rows)."""
+        slopes: Matrix = getattr(self, name)(self.balances_by_link)
+        columns = [self.articulated_response(column) for column in zip(*slopes, strict=True)]
+        return [list(row) for row in zip(*columns, strict=True)] if columns else [[] for _ in range(self.nv)]
+
+    def response_figures(self, columns: int) -> dict[str, float | Callable[[], float]]:
+        """Figures by which methods of so many columns of derivatives of the acceleration apply."""
         return {
             **self.route_figures,
             **recursion.figures_of(self.kinematics, self.rotors),
             "prescribed_speeds": self.nu - self.efforts,
             "coupled_speeds": partial(coupled_speeds, self.tree),
+            "direct_changes": lambda: len(self.direct_changes),
+            "elimination_steps": lambda: self.factors.entries * columns,
         }
 
     @cached_property
@@ -137,15 +145,22 @@ class Equations(EquationsOfMotion):
         a = self._held(self.articulated)
         return responses(self.kinematics, self._bare_inertias, joints, a, self.gravity)
 
-    def direct_slopes(self, name: str) -> Matrix:
-        """Derivative "by_q", "by_v" or "by_u" of the balance, less what links do that move (nv rows)."""
-        slopes: Matrix = getattr(self, name)(self._less_applied([ZERO] * self.nv))
-        if name != "by_q":
-            return slopes
-        return [
-            [self.g.add(x, y) for x, y in zip(row, turned, strict=True)]
-            for row, turned in zip(slopes, self.responses.turned, strict=True)
+    @cached_property
+    def direct_changes(self) -> list[DirectChange]:
+        """Changes of the balances by q, v and u at held motions of the links, where they are not always zero."""
+        others = self._less_applied([ZERO] * self.nv)
+        slopes = [self.by_q(others), self.by_v(others), self.by_u(others)]
+        slopes[0] = [
+            [self.g.add(x, y) for x, y in zip(*rows, strict=True)]
+            for rows in zip(slopes[0], self.responses.turned, strict=True)
         ]
+        return sorted(
+            DirectChange(k, by, column, edge)
+            for by, rows in enumerate(slopes)
+            for k, row in enumerate(rows)
+            for column, edge in enumerate(row)
+            if edge != ZERO
+        )
 
     @cached_property
     def residual_by_u(self) -> Matrix:
@@ -229,6 +244,22 @@ class Equations(EquationsOfMotion):
         own = inertia_inputs(self.kinematics)
         total = inertia_forces(self.kinematics, own, [], self.v_rate, self.gravity)
         return by_inputs(self.kinematics, total, "pi", 10 * len(own))
+
+    @property
+    def beam_stiffness(self) -> tuple[list[Edge], Matrix, Matrix]:
+        """Lengths of the elastic beams, EI_z and EI_y of each, and the stiffness of their coordinates (nv x nv)."""
+        lower, K = self.kinematics.lowering.value, [[ZERO] * self.nv for _ in range(self.nv)]
+        lengths, stiffnesses = [], []
+        for moving in self.kinematics.beams:
+            if moving.tip is None:
+                continue
+            beam, first = moving.equations.beam, self.kinematics.links[moving.tip].first_speed
+            lengths.append(lower(beam.length))
+            judged = theory_of(beam).judged
+            stiffnesses.append([lower(judged.EI_z), lower(judged.EI_y)])
+            for i, stiffness in enumerate(moving.equations.strain_energy.second_derivatives(), first):
+                K[i][first : first + beam.modes] = stiffness
+        return lengths, stiffnesses, K
 
     @cached_property
     def T(self) -> Edge:

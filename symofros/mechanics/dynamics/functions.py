@@ -2,7 +2,6 @@
 
 from __future__ import annotations
 
-from bisect import bisect_left
 from collections.abc import Callable, Mapping, Sequence
 from dataclasses import replace
 from itertools import chain
@@ -14,12 +13,12 @@ from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.instants import operands_function
 from symofros.expr.program import Function, Output, Program, Solver
 from symofros.expr.substitute import substitute
-from symofros.mechanics.beams.theories import theory_of
 from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.dynamics.derivatives.adjoints import weighted_derivatives
 from symofros.mechanics.dynamics.derivatives.hessians import hessian, stacked
+from symofros.mechanics.dynamics.derivatives.responses import changes_tables
 from symofros.mechanics.dynamics.derivatives.second_derivatives import hessian_vector_product, second_derivatives
 from symofros.mechanics.dynamics.derivatives.second_derivatives import route as by_two_speeds_route
 from symofros.mechanics.dynamics.equations import Equations
@@ -210,11 +209,8 @@ def _forward_slopes(e: Equations, row: ModelFunction, methods: Methods, known: M
     if e.constraints:
         return _forward_slopes_by_routine(e, row, choose("derivatives of constrained motion"), known)
     columns = sum(array.sizes(known)[1] for array in row.outputs)
-    figures = e.response_figures | {
-        "elimination_steps": lambda: e.factors.entries * columns,
-        "by_state": not methods.factors and [array.name for array in row.outputs] == ["by_q", "by_v", "by_u"],
-        "direct_changes": lambda: len(_direct_changes(e, row)),
-    }
+    by_state = not methods.factors and [array.name for array in row.outputs] == ["by_q", "by_v", "by_u"]
+    figures = e.response_figures(columns) | {"by_state": by_state}
     choice = choose("derivatives of the acceleration", figures, methods.slopes)
     if choice.method == "articulated":
         return replace(_articulated_slopes(e, row, known), choices=(choice,))
@@ -231,38 +227,17 @@ def _forward_slopes(e: Equations, row: ModelFunction, methods: Methods, known: M
 
 def _articulated_slopes(e: Equations, row: ModelFunction, known: Mapping[str, int]) -> Function:
     """The same by articulated bodies, whose wrenches are differentiated link by link (linear.md, eqs. 29, 30)."""
-    balances = e.balances_by_link
-    outputs = []
-    for array in row.outputs:
-        slopes = getattr(e, array.name)(balances)
-        columns = [e.articulated_response(column) for column in zip(*slopes, strict=True)]
-        rows = list(zip(*columns, strict=True)) if columns else [()] * e.nv
-        outputs.append(_matrix(array.name, (e.nv, len(columns)), rows))
-    return Function(row.name, "", row.inputs, tuple(outputs))
+    outputs = tuple(_matrix(a.name, (e.nv, a.sizes(known)[1]), e.articulated_slopes(a.name)) for a in row.outputs)
+    return Function(row.name, "", row.inputs, outputs)
 
 
 def _forward_slopes_by_sweeps(e: Equations, row: ModelFunction, choice: Choice, known: Mapping[str, int]) -> Function:
-    """The same by what sweeps over the speeds need of each (linear.md, eqs. 31-35), for a routine."""
-    changes = _direct_changes(e, row)
-    begin = [bisect_left(changes, (k,)) for k in range(e.nv + 1)]
-    terms = (
-        _matrix("steps", (e.nv, 16), e.responses.steps),
-        _matrix("fields", (e.nv, 30), e.responses.fields),
-        _vector("direct", [edge for *_, edge in changes]),
-    )
-    places = tuple(place for _, by, column, _ in changes for place in (by, column))
-    tables = e.responses.parents + e.responses.firsts, tuple(begin), places
-    solver = Solver("responses", _returns(row, known), (), tables)
+    """The same by sweeps over the speeds (linear.md, eqs. 31-35): what these need of each, for a routine."""
+    of, changes = e.responses, e.direct_changes
+    steps, fields = _matrix("steps", (e.nv, 16), of.steps), _matrix("fields", (e.nv, 30), of.fields)
+    terms = steps, fields, _vector("direct", [change.edge for change in changes])
+    solver = Solver("responses", _returns(row, known), (), (of.parents + of.firsts, *changes_tables(changes, e.nv)))
     return Function(row.name, "", row.inputs, terms, solver, choices=(choice,))
-
-
-def _direct_changes(e: Equations, row: ModelFunction) -> list[tuple[int, int, int, Edge]]:
-    """Changes of forces at held motions that are not zero in every state: row, which derivative, column, edge."""
-    changes = []
-    for by, array in enumerate(row.outputs):
-        for k, of_row in enumerate(e.direct_slopes(array.name)):
-            changes += [(k, by, column, edge) for column, edge in enumerate(of_row) if edge != ZERO]
-    return sorted(changes)
 
 
 def _forward_slopes_by_routine(e: Equations, row: ModelFunction, choice: Choice, known: Mapping[str, int]) -> Function:
@@ -332,18 +307,8 @@ def _move(e: Equations) -> Function:
 
 def _beam_stiffness(e: Equations, row: ModelFunction, methods: Methods, known: Mapping[str, int]) -> Function:
     """Lengths and stiffnesses of the elastic beams, by the run-time parameters alone."""
-    lower, K = e.kinematics.lowering.value, [[ZERO] * e.nv for _ in range(e.nv)]
-    lengths, stiffnesses = [], []
-    for moving in e.kinematics.beams:
-        if moving.tip is None:
-            continue
-        beam, first = moving.equations.beam, e.kinematics.links[moving.tip].first_speed
-        lengths.append(lower(beam.length))
-        judged = theory_of(beam).judged
-        stiffnesses.append([lower(judged.EI_z), lower(judged.EI_y)])
-        for i, stiffness in enumerate(moving.equations.strain_energy.second_derivatives(), first):
-            K[i][first : first + beam.modes] = stiffness
-    outputs = _vector("L", lengths), _matrix("EI", (len(lengths), 2), stiffnesses), _matrix("K", (e.nv, e.nv), K)
+    L, EI, K = e.beam_stiffness
+    outputs = _vector("L", L), _matrix("EI", (len(L), 2), EI), _matrix("K", (e.nv, e.nv), K)
     return Function(row.name, "", row.inputs, outputs)
 
 

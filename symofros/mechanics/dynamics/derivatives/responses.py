@@ -6,8 +6,10 @@ elimination that forward dynamics makes, and what a unit of the coordinate and o
 
 from __future__ import annotations
 
+from bisect import bisect_left
 from collections.abc import Sequence
 from dataclasses import dataclass
+from typing import NamedTuple
 
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
@@ -42,6 +44,21 @@ class Responses:
     turned: Matrix
     parents: tuple[int, ...]
     firsts: tuple[int, ...]
+
+
+class DirectChange(NamedTuple):
+    """Change of the balance of speed `row` by a column of the derivatives by q, v or u (`by` is 0, 1, 2)."""
+
+    row: int
+    by: int
+    column: int
+    edge: Edge
+
+
+def changes_tables(changes: Sequence[DirectChange], nv: int) -> tuple[tuple[int, ...], tuple[int, ...]]:
+    """Index of the first change of each row, and of the end; and of each change `by` and its column."""
+    begin = tuple(bisect_left(changes, (k,)) for k in range(nv + 1))
+    return begin, tuple(place for change in changes for place in (change.by, change.column))
 
 
 def responses(
