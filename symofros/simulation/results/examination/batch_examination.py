@@ -68,7 +68,10 @@ class BatchExamination:
         run = self._made_again(run, failed=status < 0)
         run.stepper.inputs_at(*last)
         done = self.settings.max_steps is not None and steps >= self.settings.max_steps
-        return diagnose_one(run, status, bendings, fault, interrupted=status == Status.RUNNING and not done)
+        outcome = diagnose_one(run, status, bendings, fault, interrupted=status == Status.RUNNING and not done)
+        if not self.model.record.has_compliant_contacts or outcome.kind != "finished" or of_steps(outcome.notes):
+            return outcome
+        return replace(outcome, notes=(*outcome.notes, *of_steps(self._notes_by_itself(i, steps) or ())))
 
     def outcome_with_events(
         self, i: int, status: int, states: tuple[Array, ...], steps: int, met: Sequence[Met]
@@ -103,7 +106,7 @@ class BatchExamination:
 
     def notes_on_steps(self, i: int, states: tuple[Array, ...], steps: int) -> tuple[str, ...]:
         """Notes on the steps of run i, which finished; arguments as of `outcome`."""
-        if self.initial.events:
+        if self.initial.events or self.model.record.has_compliant_contacts:
             return of_steps(self._notes_by_itself(i, steps) or ())
         run = self._made_again(self._run(i, states, steps), failed=False)
         return examine_run(run, ended_well=True, failed=False)[1]

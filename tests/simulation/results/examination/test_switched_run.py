@@ -150,6 +150,10 @@ def test_what_contacts_make_of_errors_is_stated() -> None:
     (note,) = run.outcome.notes
     assert "do not determine the motion over its contacts" in note and "errs by about 32 %" in note
     assert not finer.outcome.notes
+    rows = [[x, x] for x in start[:2]]
+    for dt, wanted in ((4e-3, (note,)), (2e-4, ())):
+        batch = sf.simulate_batch(model, *rows, 1.2, dt=dt)
+        assert batch.outcome(0).notes == batch.outcome(1).notes == wanted
 
 
 def relay() -> Motion:
