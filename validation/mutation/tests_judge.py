@@ -24,16 +24,16 @@ HUNG = 77
 MOST = 8  # Files of tests a module: all of them are imported before the first one runs.
 _CONTACTS = (
     "tests/native/test_contact_problems.py",
-    "tests/simulation/test_rigid_contacts.py",
-    "tests/simulation/test_rigid_contacts_implicit.py",
-    "tests/simulation/test_rigid_contacts_in_batches.py",
-    "tests/simulation/test_landing.py",
-    "tests/simulation/test_contact_scenes.py",
-    "tests/simulation/test_rigid_heaps.py",
+    "tests/simulation/contacts/test_rigid_contacts.py",
+    "tests/simulation/contacts/test_rigid_contacts_implicit.py",
+    "tests/simulation/contacts/test_rigid_contacts_in_batches.py",
+    "tests/simulation/contacts/test_landing.py",
+    "tests/simulation/contacts/test_contact_scenes.py",
+    "tests/simulation/contacts/test_rigid_heaps.py",
 )
 _BEAM_LIMITS = (
-    "tests/simulation/test_beam_limit.py",
-    "tests/simulation/test_stated_error.py",
+    "tests/simulation/beams/test_beam_limit.py",
+    "tests/simulation/beams/test_stated_error.py",
     "tests/simulation/analysis/test_beam_theory.py",
 )
 # The tests of C lie with what calls it: folders of tests of a folder, files of tests of a file.
@@ -48,7 +48,7 @@ _MIRRORS = {
     "symofros/native/stepping": ("tests/simulation/stepping", "tests/simulation", "tests/native"),
     "symofros/native/stepping/methods/input_moments.c": (
         "tests/simulation/stepping",
-        "tests/simulation/test_within_steps.py",
+        "tests/simulation/events/test_within_steps.py",
     ),
     # What packages and frameworks alone call.
     "symofros/native/stepping/instances/instance.c": (
@@ -61,32 +61,32 @@ _MIRRORS = {
     ),
     # Steps by hand, signals, and what is written of formulas.
     "symofros/native/stepping/batches/by_hand.c": (
-        "tests/simulation/test_stepper.py",
-        "tests/simulation/test_steppers.py",
+        "tests/simulation/steppers/test_stepper.py",
+        "tests/simulation/steppers/test_steppers.py",
     ),
     "symofros/native/stepping/state/system.c": (
         "tests/simulation/stepping",
-        "tests/simulation/test_held_samples.py",
+        "tests/simulation/events/test_held_samples.py",
         "tests/simulation/results/examination/test_input_impulses.py",
     ),
     "symofros/native/stepping/state/rotations.c": ("tests/simulation/stepping", "tests/runtime/test_manifold_c.py"),
     "symofros/native/stepping/batches": (
         "tests/simulation/stepping",
         "tests/simulation/test_simulate_batch.py",
-        "tests/simulation/test_steppers.py",
+        "tests/simulation/steppers/test_steppers.py",
     ),
     "symofros/native/stepping/contacts": ("tests/simulation", *_CONTACTS),
-    "symofros/native/stepping/contacts/sticking.c": ("tests/simulation", "tests/simulation/test_sticking.py"),
+    "symofros/native/stepping/contacts/sticking.c": ("tests/simulation", "tests/simulation/contacts/test_sticking.py"),
     "symofros/native/stepping/events": (
         "tests/simulation/stepping",
-        "tests/simulation/test_actions.py",
-        "tests/simulation/test_actions_by_hand.py",
-        "tests/simulation/test_within_steps.py",
-        "tests/simulation/test_landing.py",
+        "tests/simulation/events/test_actions.py",
+        "tests/simulation/steppers/test_actions_by_hand.py",
+        "tests/simulation/events/test_within_steps.py",
+        "tests/simulation/contacts/test_landing.py",
     ),
     "symofros/native/stepping/events/formula_instants.c": (
         "tests/expr/test_instants.py",
-        "tests/simulation/test_within_steps.py",
+        "tests/simulation/events/test_within_steps.py",
     ),
     "symofros/native/stepping/instances": (
         "tests/exports/c/test_events.py",
@@ -132,9 +132,12 @@ _MIRRORS = {
     ),
     "symofros/mechanics/dynamics/reactions.py": (
         "tests/mechanics/dynamics",
-        "tests/simulation/test_conditions_by_forces.py",
+        "tests/simulation/events/test_conditions_by_forces.py",
     ),
-    "symofros/mechanics/topology/sticking.py": ("tests/mechanics/topology", "tests/simulation/test_sticking.py"),
+    "symofros/mechanics/topology/sticking.py": (
+        "tests/mechanics/topology",
+        "tests/simulation/contacts/test_sticking.py",
+    ),
     "symofros/mechanics/topology/beams.py": (
         "tests/mechanics/topology",
         "tests/mechanics/topology/test_beams.py",
@@ -145,12 +148,15 @@ _MIRRORS = {
     "symofros/simulation/analysis/sliding.py": ("tests/simulation/analysis", *_CONTACTS[1:]),
     "symofros/simulation/stepping/batch_by_hand.py": (
         "tests/simulation/stepping",
-        "tests/simulation/test_steppers.py",
-        "tests/simulation/test_actions_by_hand.py",
+        "tests/simulation/steppers/test_steppers.py",
+        "tests/simulation/steppers/test_actions_by_hand.py",
     ),
     "symofros/generator/codegen/manifold.py": ("tests/generator/codegen", "tests/runtime/test_manifold_c.py"),
     "symofros/base": ("tests/base", "tests/test_public_arguments.py", "tests/test_public_nonsense.py"),
-    "symofros/simulation/simulate_batch.py": ("tests/simulation", "tests/simulation/test_prescribed_motions.py"),
+    "symofros/simulation/simulate_batch.py": (
+        "tests/simulation",
+        "tests/simulation/constraints/test_prescribed_motions.py",
+    ),
 }
 # What watches the whole of the mechanics, of motions.
 _GENERAL = {

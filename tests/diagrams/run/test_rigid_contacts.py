@@ -10,8 +10,8 @@ from symofros.blocks import ForwardDynamics, Hold, ModelFunction, Sequence
 from symofros.diagrams.program.compiled import resolve
 from symofros.simulation.events import CONTACT_WORDS, FRICTION_WORDS, ModeEvent
 from tests.diagrams.run.test_switching import CASES, Case, Thrown, diagram, simulated
+from tests.simulation.contacts.test_landing import BOX, DISC
 from tests.simulation.rigid_scenes import G, box_system, in_shell
-from tests.simulation.test_landing import BOX, DISC
 
 
 def hopper() -> sf.Diagram:

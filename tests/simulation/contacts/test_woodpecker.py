@@ -8,7 +8,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.simulation import woodpecker
+from tests.simulation.contacts import woodpecker
 
 # A cycle: the beak strikes, the sleeve's upper edge strikes, slides and lets go; the lower one strikes, slides until
 # it jams, holds the toy while the bird swings back, slides again and lets go.

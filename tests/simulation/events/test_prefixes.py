@@ -9,9 +9,9 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from tests.simulation.contacts.test_resting import ball as held_ball
+from tests.simulation.contacts.test_resting import floor
 from tests.simulation.rigid_scenes import ball_system
-from tests.simulation.test_resting import ball as held_ball
-from tests.simulation.test_resting import floor
 
 FIXED: dict[str, Any] = {"method": "rk4", "dt": 1e-2}
 ADAPTIVE: dict[str, dict[str, Any]] = {

@@ -12,7 +12,7 @@ import symofros as sf
 import tests.models
 from tests.models import compiled
 from tests.simulation.oscillator import oscillator_system
-from tests.simulation.test_stepper import DT, start
+from tests.simulation.steppers.test_stepper import DT, start
 
 N = 70  # More than the slots of one group.
 

@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from tests.models import compiled
-from tests.simulation.test_stepper import DT
+from tests.simulation.steppers.test_stepper import DT
 
 REFUSED: dict[str, tuple[dict[str, Any], str]] = {
     "a method of SUNDIALS": ({"method": "cvode"}, r"no steps to be made by hand[\s\S]*found:[\s\S]*rule:[\s\S]*rodas4"),

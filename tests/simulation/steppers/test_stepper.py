@@ -16,8 +16,8 @@ import symofros as sf
 import symofros.simulation.stepper as front
 import symofros.simulation.stepping.by_hand as by_hand
 from tests.models import GUESSES, compiled, sampled
+from tests.simulation.constraints.test_prescribed_motions import crane
 from tests.simulation.mechanisms import slide
-from tests.simulation.test_prescribed_motions import crane
 
 DT, STEPS = 5e-4, 12
 FIXED = ["rk4", "euler", "semi_implicit_euler", "implicit_euler", "generalized_alpha", "variational"]

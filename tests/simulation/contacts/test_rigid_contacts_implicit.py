@@ -11,8 +11,8 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import symofros as sf
+from tests.simulation.contacts.test_rigid_rims import in_body, tilted
 from tests.simulation.rigid_scenes import FINE, GROUND, G, ball, disc_system, in_shell, point, rested, rod
-from tests.simulation.test_rigid_rims import in_body, tilted
 
 Fixed = Literal["rodas4", "implicit_euler"]
 
