@@ -96,7 +96,7 @@ def responses(
             parents[row], firsts[row], before = before, link.first_speed, row
             G, h = joint.ratios[k], Vec3(g, *turning[i].forces[k]).scaled(joint.inverses[k])
             G_K, s_K = view.wrench(Vec3(g, *G[:3]), Vec3(g, *G[3:6])), view.motion(partial.v, partial.w)
-            steps[row] = [*(-edge for edge in G_K), *s_K, *-view.R.times(h), -joint.inverses[k]]
+            steps[row] = [*(-edge for edge in G_K), *s_K, *-view.R_KL.times(h), -joint.inverses[k]]
             total = wrenches[i]
             turn = Wrench(partial.w.cross(total.f), partial.w.cross(total.n) + partial.v.cross(total.f))
             for j in range(len(link.free_partial_velocities)):
@@ -114,18 +114,18 @@ def responses(
 class _View:
     """A link seen from the origin and in the axes of the first link K on its way from the base: R_KL, p_KL in K."""
 
-    R: Mat3
-    p: Vec3
+    R_KL: Mat3
+    p_KL: Vec3
 
     def motion(self, a: Vec3, alpha: Vec3) -> list[Edge]:
         """Acceleration of Lo and angular acceleration in L -> those of Ko in K."""
-        alpha = self.R.times(alpha)
-        return [*(self.R.times(a) + self.p.cross(alpha)), *alpha]
+        alpha = self.R_KL.times(alpha)
+        return [*(self.R_KL.times(a) + self.p_KL.cross(alpha)), *alpha]
 
     def wrench(self, f: Vec3, n: Vec3) -> list[Edge]:
         """Wrench about Lo, in L -> about Ko, in K."""
-        f = self.R.times(f)
-        return [*f, *(self.R.times(n) + self.p.cross(f))]
+        f = self.R_KL.times(f)
+        return [*f, *(self.R_KL.times(n) + self.p_KL.cross(f))]
 
 
 def _views(kinematics: TreeKinematics) -> list[_View]:
@@ -136,7 +136,7 @@ def _views(kinematics: TreeKinematics) -> list[_View]:
             views.append(_View(Mat3.identity(g), Vec3(g)))
         else:
             of_A = views[link.parent]
-            views.append(_View(link.R_AL.after(of_A.R), of_A.p + of_A.R.times(link.p_AL)))
+            views.append(_View(link.R_AL.after(of_A.R_KL), of_A.p_KL + of_A.R_KL.times(link.p_AL)))
     return views
 
 
@@ -171,9 +171,9 @@ def _turning_bodies(
                 row[:] = [g.sub(x, g.mul(ratio, y)) for x, y in zip(row, rows[k], strict=True)]
         bodies[i] = _TurningBody(rows[:6], rows[6:])
         if link.parent != BASE:
-            f_A, n_A = (link.R_AL.conjugate_any(_matrix(g, rows[at : at + 3])) for at in (0, 3))
-            shift = Mat3.from_columns(g, [link.p_AL.cross(f_A.column(c)) for c in range(3)])
-            f[link.parent], n[link.parent] = f[link.parent] + f_A, n[link.parent] + (n_A + shift)
+            force, moment = (link.R_AL.conjugate_any(_matrix(g, rows[at : at + 3])) for at in (0, 3))
+            shift = Mat3.from_columns(g, [link.p_AL.cross(force.column(c)) for c in range(3)])
+            f[link.parent], n[link.parent] = f[link.parent] + force, n[link.parent] + (moment + shift)
     return bodies
 
 
@@ -182,7 +182,7 @@ def _field(view: _View, joint: FreeJoint, body: _TurningBody, change: Variation,
     g = change.w.g
     f, n = (_matrix(g, body.wrenches[at : at + 3]).times(change.w) for at in (0, 3))
     wrench = joint.body.inertia.times(Acceleration(change.alpha, change.a)) + Wrench(f, n) + turn
-    return [*view.wrench(wrench.f, wrench.n), *view.motion(change.a, change.alpha), *view.R.times(change.w)]
+    return [*view.wrench(wrench.f, wrench.n), *view.motion(change.a, change.alpha), *view.R_KL.times(change.w)]
 
 
 def _cross_matrix(p: Vec3) -> Mat3:
