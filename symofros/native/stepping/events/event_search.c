@@ -357,6 +357,9 @@ SYM_EXPORT int32_t sym_event_search_next(sym_event_search *s, int32_t *which, do
     return 0;
 }
 
+/* The event taken last is looked for from x on, where its value counts as zero. */
+static void sym_event_search_pass(sym_event_search *s, double x) { sym_rows_of_search(s).next_x[s->taken] = x; }
+
 SYM_EXPORT int32_t sym_event_is_met(const sym_event_search *s, int32_t i, double x, double value) {
     const sym_event_rows rows = sym_rows_of_search(s);
     return rows.next_x[i] > x && rows.next_x[i] <= x + SYM_EVENT_RESOLUTION &&

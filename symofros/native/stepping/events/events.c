@@ -127,21 +127,26 @@ static int sym_settled_now(const sym_run *r, int32_t i) {
 
 /* Whether event i is met at x by rounding alone: a strike has left the bodies on each other, or a little apart, where the step
  * begins, and half way to x they have not moved apart by more; a ball of a rigid contact is above zero soon after x, or not
- * beyond it at the end of the step either. Returns 0 or a status. */
-static int32_t sym_event_is_rounding(sym_event_step *step, int32_t i, double x, int32_t *is) {
+ * beyond it at the end of the step either. *past: behind which the search goes on, so that a ball that stays within rounding for a
+ * part of the step is not asked about at each zero of its rounding; 0: the event is met. Returns 0 or a status. */
+static int32_t sym_event_is_rounding(sym_event_step *step, int32_t i, double x, double *past) {
     const sym_run *r = step->run;
     const double end = r->event_values[(SYM_EVENT_NODES - 1) * r->system->n_events + i];
-    double *values = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events;
+    double *values = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events, behind[2] = {x + SYM_EVENT_RISES, fmax(2.0 * x, SYM_EVENT_RESOLUTION)};
     const int settled = r->actions != NULL && sym_settled_now(r, i);
-    int32_t status, stays = 1;
-    *is = 0;
+    int32_t status, k, is, stays = 1;
+    *past = 0.0;
     if (r->actions == NULL || (!settled && (r->actions->restitution[i] != 0.0 || r->acted_at[i] != r->t))) return 0;
-    status = sym_event_is_at_zero(step, i, 0.5 * x, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, is);
-    if (status != 0 || !*is || !settled || !(end < 0.0)) return status;
-    if (x + SYM_EVENT_RISES < 1.0) status = sym_event_values_within_step(step, x + SYM_EVENT_RISES, values);
-    if (status != 0 || (x + SYM_EVENT_RISES < 1.0 && values[i] > 0.0)) return status;
-    status = sym_event_is_at_zero(step, i, 1.0, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, &stays);
-    *is = stays;
+    status = sym_event_is_at_zero(step, i, 0.5 * x, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, &is);
+    if (status != 0 || !is) return status;
+    if (settled && end < 0.0) status = sym_event_is_at_zero(step, i, 1.0, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, &stays);
+    if (stays) *past = behind[1];
+    for (k = 0; k < 2 && !stays && status == 0; ++k) {
+        if (!(behind[k] < 1.0 && behind[k] > *past)) continue;
+        status = sym_event_values_within_step(step, behind[k], values);
+        if (values[i] > 0.0) *past = behind[k];
+        else if (k == 0) break;
+    }
     return status;
 }
 
@@ -158,12 +163,13 @@ static int32_t sym_keep_event_notes(sym_event_step *step, const sym_event_search
     sym_run *r = step->run;
     const int32_t i = search->touched;
     const double rtol = r->adaptive ? r->rtol : SYM_EVENT_RTOL, atol = r->adaptive ? r->atol : SYM_EVENT_ATOL;
-    int32_t status, is_rounding, is_zero = 0;
+    double past;
+    int32_t status, is_zero = 0;
     if (r->unresolved_event < 0 && search->unresolved >= 0)
         r->unresolved_event = search->unresolved, r->unresolved_t = r->t;
     if (r->touched_event >= 0 || i < 0 || sym_leaves_contact(r, i)) return 0;
-    status = sym_event_is_rounding(step, i, search->touched_x, &is_rounding);
-    if (status != 0 || is_rounding) return status;
+    status = sym_event_is_rounding(step, i, search->touched_x, &past);
+    if (status != 0 || past > 0.0) return status;
     status = sym_event_is_at_zero(step, i, search->touched_x, rtol, atol, &is_zero);
     if (status == 0 && is_zero) r->touched_event = i, r->touched_t = r->t + search->touched_x * step->h;
     return status;
@@ -199,13 +205,16 @@ static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *
     search.start_changes = !s->events_free_of_inputs && s->nu > 0;
     status = sym_event_search_begin(&search);
     while (status == 0) {
-        double x;
-        int32_t which, is_rounding;
+        double x, past;
+        int32_t which;
         status = sym_event_search_next(&search, &which, &x);
         if (status != 0 || which < 0 || x > *stop_x) break;
-        status = sym_event_is_rounding(&step, which, x, &is_rounding);
+        status = sym_event_is_rounding(&step, which, x, &past);
         if (status != 0) break;
-        if (is_rounding) continue;
+        if (past > 0.0) {
+            sym_event_search_pass(&search, past);
+            continue;
+        }
         if (x != last_x && r->n_event_records + s->n_events > r->event_capacity) {
             *stop_x = last_x;
             break;
