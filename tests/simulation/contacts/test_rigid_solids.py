@@ -47,6 +47,21 @@ def test_a_ball_slides_over_an_edge_until_it_leaves(surface: str) -> None:
     assert np.abs(straight[:, 2] - top - RADIUS).max(initial=0.0) < 1e-12
 
 
+@pytest.mark.parametrize("given", [FINE, {"method": "rk4", "dt": 7e-4}, {"method": "rodas4"}])
+def test_no_record_of_a_ball_that_leaves_at_the_edge_at_once_says_that_it_is_drawn(given: dict[str, Any]) -> None:
+    """At more than sqrt(g R) its force jumps from m g to zero; m (g - v^2/R) draws, of the mode that ends there."""
+    top, end, _, _, sizes = SOLIDS["box"]
+    model, v = against("box", 0.0, **sizes), [1.5, 0.0, 0.0, 0.0, 0.0, 0.0]
+    start = model.neutral()
+    start[2] = top + RADIUS
+    run = sf.simulate(model, start, v, t_end=0.5, **given)
+    (leaves,) = run.events
+    assert leaves.name == "top opens" and leaves.t == pytest.approx(end / v[0], abs=1e-5)
+    push = run.contact_forces().push[:, 0]
+    assert push == pytest.approx(np.where(run.t < leaves.t, G, 0.0), abs=1e-6)
+    assert run.a[run.t >= leaves.t, 2] == pytest.approx(-G, abs=1e-9)
+
+
 def test_a_ball_that_rolls_in_an_upright_cylinder_comes_up_again() -> None:
     """Its height swings harmonically, sqrt(2/7) times as fast as it goes round: why golf balls leave their holes."""
     rate, way = 12.0, 0.4
