@@ -20,12 +20,28 @@ def contact_dynamics(
 ) -> tuple[Array, Array]:
     """Accelerations (n, nv) and multipliers (n, nc) by the modes of rigid contacts, friction of sliding balls included.
 
+    Where a contact would pull, and the next state is the same but for its modes, those of the next are given: there
+    the force has jumped past zero, and the modes that follow hold at that instant (docs/theory/constraints.md, (40)).
+
     Args:
         model: The model.
-        states: t (n), q (n, nq), v (n, nv), u (n, nu).
+        states: t (n), q (n, nq), v (n, nv), u (n, nu), in the order of time.
         par: Run-time parameters (npar) or (n, npar).
         given: States of forces, as z.
     """
+    a, lam = _dynamics_by_modes(model, states, par, **given)
+    normals = [ball.rows[2] for ball in model.record.rigid_contacts]
+    pulling = (lam[:-1, normals] < 0).any(axis=1)
+    for first in reversed(np.flatnonzero(pulling)):
+        if all(np.allclose(x[first], x[first + 1], rtol=1e-9, atol=1e-9) for x in states[:3]):
+            a[first], lam[first] = a[first + 1], lam[first + 1]
+    return a, lam
+
+
+def _dynamics_by_modes(
+    model: Model, states: tuple[Array, Array, Array, Array], par: Array, **given: Any
+) -> tuple[Array, Array]:
+    """As `contact_dynamics`, each state by its own modes."""
     t, q, v, u = states
     a, lam, _ = model.constrained_dynamics(q, v, u, par=par, t=t, **given)
     balls, rows = model.record.rigid_contacts, np.broadcast_to(par, (len(t), model.npar))

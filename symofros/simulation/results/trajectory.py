@@ -180,18 +180,7 @@ class Trajectory:
 
     @cached_property
     def _dynamics(self) -> tuple[Array, Array]:
-        a, lam = contact_dynamics(self.model, (self.t, self.q, self.v, self.u), self._par, **self._states)
-        normals = [ball.rows[2] for ball in self.model.record.rigid_contacts]
-        for first, _ in self.changes:  # a force that has jumped past zero is that of the modes that follow: (40)
-            before = first - 1
-            if 0 < first < len(self) and (lam[before, normals] < 0).any() and self._same_state(before, first):
-                a[before], lam[before] = a[first], lam[first]
-        return a, lam
-
-    def _same_state(self, first: int, other: int) -> bool:
-        """Whether two records are of one instant and state, modes apart."""
-        pairs = [(values[first], values[other]) for values in (self.t, self.q, self.v)]
-        return all(np.allclose(x, y, rtol=1e-9, atol=1e-9) for x, y in pairs)
+        return contact_dynamics(self.model, (self.t, self.q, self.v, self.u), self._par, **self._states)
 
     @property
     def a(self) -> Array:

@@ -11,6 +11,7 @@ from symofros.diagrams.program.compiled import resolve
 from symofros.simulation.events import CONTACT_WORDS, FRICTION_WORDS, ModeEvent
 from tests.diagrams.run.test_switching import CASES, Case, Thrown, diagram, simulated
 from tests.simulation.contacts.test_landing import BOX, DISC
+from tests.simulation.contacts.test_rigid_solids import RADIUS, SOLIDS, system_against
 from tests.simulation.rigid_scenes import G, box_system, in_shell
 
 
@@ -69,6 +70,19 @@ def test_forces_are_those_of_a_run_by_itself() -> None:
             np.testing.assert_allclose(run[f"{block}force"][i], forces.force[k], atol=1e-10)
             np.testing.assert_allclose(run[f"{block}push"][i], forces.push[k], atol=1e-10)
     assert (forces.force[1, :, 0] < -0.1).all(), "friction is seen"
+
+
+def test_no_record_of_a_ball_that_leaves_at_the_edge_at_once_says_that_it_is_drawn() -> None:
+    """As of a run by itself: at the edge its force jumps from m g to zero."""
+    top, end, _, _, sizes = SOLIDS["box"]
+    of = sf.Diagram("edge")
+    of.add_model("m", system_against("box", 0.0, **sizes), {"ball.pz": top + RADIUS, "ball.vx": 1.5})
+    of.add(ForwardDynamics(name="plant", model="m", tells=("contact_forces",)))
+    run = sf.Simulation(of).run(0.5, dt=7e-4, method="rk4")
+    (leaves,) = run.events["plant"]
+    assert leaves.name == "top opens" and leaves.t == pytest.approx(end / 1.5, abs=1e-5)
+    push = run["plant.contact_forces_push"][:, 0]
+    assert push == pytest.approx(np.where(run.t < leaves.t, G, 0.0), abs=1e-6)
 
 
 def test_forces_of_rigid_contacts_are_of_multipliers() -> None:

@@ -14,13 +14,17 @@ from tests.simulation.rigid_scenes import FINE, GROUND, G, sphere
 RADIUS = 0.1
 
 
-def against(surface: str, friction: float, turned: sf.Rotation | None = None, **sizes: Any) -> sf.Model:
+def system_against(surface: str, friction: float, turned: sf.Rotation | None = None, **sizes: Any) -> sf.System:
     """A ball and a solid that is fixed, whose frame may be turned."""
     frame = sf.Frame("top") if turned is None else sf.Frame("top", rotation=turned)
     base = sf.RigidBody("base", sf.Joint("base", "fixed"), frames=[frame])
     laws: dict[str, Any] = {"restitution": 0.0, "friction": friction, "radius": RADIUS}
     contact = sf.Contact("top", ("ball", None), ("base", "top"), surface=surface, **sizes, **laws)  # type: ignore[arg-type]
-    return sf.compile(sf.System("against", [base, sphere("ball", 1.0, RADIUS)], connections=[contact]))
+    return sf.System("against", [base, sphere("ball", 1.0, RADIUS)], connections=[contact])
+
+
+def against(surface: str, friction: float, turned: sf.Rotation | None = None, **sizes: Any) -> sf.Model:
+    return sf.compile(system_against(surface, friction, turned, **sizes))
 
 
 ALONG_X = sf.Rotation.axis_angle((0, 1, 0), pi / 2)
