@@ -260,7 +260,7 @@ def _by_formulas(bench: _Bench, what: Literal["derivatives", "procedures"], clos
     # SciPy's integrators take half a second to import, which other models do without.
     try:
         if what == "derivatives":
-            module = import_module(".procedures.derivatives", __package__)
+            module = import_module(".procedures.equations.derivatives", __package__)
             asked = module.Asked(label, system, assembly, closed, bench.condition, bench.settings.full)
             # What reads a file of its own states no derivatives that another route would not.
             engines = [one.engine for one in bench.engines if not one.route.reads]

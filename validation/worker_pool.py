@@ -28,7 +28,7 @@ COLLECTED_AT = 50_000
 # What relations, derivatives and procedures import when they are asked, the package's first uses of its public names
 # among them: a quarter of a second of each model's process.
 _OF_OWN_QUESTIONS = (
-    f"{__package__}.procedures.derivatives",
+    f"{__package__}.procedures.equations.derivatives",
     f"{__package__}.procedures.catalogue",
     "symofros.exports.exporting",
     "symofros.description.mjcf.reader",

@@ -14,28 +14,10 @@ from ..comparison.errors import Comparison, Status
 from ..contract.raised import not_installed
 from ..mechanics.assembly import Assembly
 from ..mechanics.geometry import Array
-from . import (
-    ENGINE,
-    analyses,
-    batches,
-    beams,
-    by_hand,
-    diagrams,
-    differences,
-    exchanged,
-    exported,
-    files,
-    forces,
-    identities,
-    library,
-    machines,
-    notes,
-    reactions,
-    runs,
-    switching,
-    touching,
-    zeros,
-)
+from . import ENGINE, blocks, diagrams, machines
+from .equations import analyses, beams, contacts, forces, identities, reactions
+from .formats import differences, exchanged, exported, files
+from .motions import batches, by_hand, notes, runs, switching, zeros
 from .scene import Cell, Manifold, Scene
 
 Procedure = Callable[[Scene], Iterator[Cell]]
@@ -96,7 +78,7 @@ _OF_THEIR_OWN: tuple[Procedure, ...] = (
     forces.each_coordinate,
     forces.rods,
     beams.in_a_plane,
-    touching.contacts,
+    contacts.contacts,
     files.read,
     differences.first_differences,
     switching.engaged,
@@ -109,7 +91,7 @@ _OF_THEIR_OWN: tuple[Procedure, ...] = (
     notes.on_steps,
     notes.on_inputs,
     notes.on_motions,
-    library.timed,
+    blocks.timed,
     exchanged.by_mujoco,
     exchanged.by_pinocchio,
     exchanged.noted,
@@ -131,8 +113,8 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         by_hand.reversed_motion,
         by_hand.acted,
         by_hand.sampled_finely,
-        lambda scene: library.computed(scene.system),
-        lambda scene: library.fed(scene.system),
+        lambda scene: blocks.computed(scene.system),
+        lambda scene: blocks.fed(scene.system),
         by_hand.run_notes,
         exported.in_casadi,
         batches.trajectories,
@@ -181,7 +163,7 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         identities.weighted_curvature,
         by_hand.stepped,
         by_hand.balanced,
-        library.begun,
+        blocks.begun,
         machines.taped,
         machines.resumed,
         exported.packages,

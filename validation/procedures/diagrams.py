@@ -13,7 +13,7 @@ import symofros as sf
 from symofros import blocks
 
 from ..mechanics.geometry import Array
-from .exported import printed
+from .formats.exported import printed
 from .scene import Cell, off
 
 ROUNDING = 1e-10

@@ -12,7 +12,7 @@ import symofros as sf
 
 from ..contract.quantities import ROUNDING
 from ..mechanics.geometry import Array
-from .identities import TRANSPOSED
+from .equations.identities import TRANSPOSED
 from .scene import Cell, Scene, off
 
 SAME = 0.5

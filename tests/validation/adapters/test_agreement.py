@@ -10,7 +10,7 @@ from validation.adapters.pinocchio import tree as pinocchio
 from validation.checking import Settings, check
 from validation.contract.interface import Subject, Unsupported
 from validation.contract.quantities import CONSTRAINED, LOOPS, QUANTITIES
-from validation.procedures.derivatives import BY_ENGINES, QUESTIONS
+from validation.procedures.equations.derivatives import BY_ENGINES, QUESTIONS
 
 FEW = Settings(states=40)
 

@@ -15,20 +15,11 @@ from reference_models import MODELS
 from symofros.base.functions import FUNCTIONS
 from validation.comparison.units import Rescaled, Units
 from validation.mechanics.assembly import assemble
-from validation.procedures import (
-    analyses,
-    batches,
-    catalogue,
-    differences,
-    files,
-    identities,
-    reactions,
-    runs,
-    steps,
-    switching,
-    zeros,
-)
+from validation.procedures import catalogue
 from validation.procedures.catalogue import PROCEDURES, first_scene, judge_procedures
+from validation.procedures.equations import analyses, identities, reactions
+from validation.procedures.formats import differences, files
+from validation.procedures.motions import batches, runs, steps, switching, zeros
 from validation.procedures.scene import Cell, Manifold, Scene
 
 

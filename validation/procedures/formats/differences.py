@@ -12,9 +12,9 @@ from scipy.spatial.transform import Rotation
 
 import symofros as sf
 
-from ..comparison.restated import RESTATEMENTS, Restated
-from ..mechanics.geometry import Array, rotation_matrix
-from .scene import Cell, Scene, off
+from ...comparison.restated import RESTATEMENTS, Restated
+from ...mechanics.geometry import Array, rotation_matrix
+from ..scene import Cell, Scene, off
 
 SAME, VALUE = 0.5, 1e-9
 Change = Callable[[sf.System], sf.System]

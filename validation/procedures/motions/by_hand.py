@@ -10,8 +10,8 @@ import numpy as np
 
 import symofros as sf
 
-from ..mechanics.geometry import Array
-from .scene import Cell, Scene, off
+from ...mechanics.geometry import Array
+from ..scene import Cell, Scene, off
 
 # The same steps; where they are divided otherwise, their rounding.
 SAME, ROUNDING = 0.5, 1e-11

@@ -11,8 +11,8 @@ import numpy as np
 import symofros as sf
 from symofros.tools import METHODS
 
-from ..mechanics.geometry import Array
-from .scene import Cell, Scene, off
+from ...mechanics.geometry import Array
+from ..scene import Cell, Scene, off
 from .steps import EXPLICIT
 
 # Trajectories: more than are stepped at once, and no multiple of a vector's lanes.

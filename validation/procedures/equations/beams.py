@@ -9,9 +9,9 @@ import numpy as np
 
 import symofros as sf
 
-from ..contract.quantities import ROUNDING
-from ..mechanics.geometry import Array
-from .scene import Cell, Scene, derivative, off
+from ...contract.quantities import ROUNDING
+from ...mechanics.geometry import Array
+from ..scene import Cell, Scene, derivative, off
 
 # Cubics over x/L that bend and twist a clamped beam, and the places of their samples, unevenly spaced.
 _CUBICS = (sf.formula("3*xi^2 - xi^3"), sf.formula("2*xi - xi^3"))

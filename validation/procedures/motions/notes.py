@@ -14,8 +14,8 @@ import numpy as np
 
 import symofros as sf
 
-from .machines import TAPE
-from .scene import Cell, Scene, off
+from ..machines import TAPE
+from ..scene import Cell, Scene, off
 
 # Notes round their numbers to three digits and more; a share to two.
 _TOLD, SAME = 6e-3, 0.5

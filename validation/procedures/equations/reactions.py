@@ -13,11 +13,11 @@ from scipy.spatial.transform import Rotation
 
 import symofros as sf
 
-from ..mechanics.assembly import Assembly, anchor_name, assemble
-from ..mechanics.elastic import POINTS, ElasticBeam
-from ..mechanics.geometry import Array
-from ..mechanics.quadrature import gauss_stations
-from .scene import Cell, Scene, derivative, off
+from ...mechanics.assembly import Assembly, anchor_name, assemble
+from ...mechanics.elastic import POINTS, ElasticBeam
+from ...mechanics.geometry import Array
+from ...mechanics.quadrature import gauss_stations
+from ..scene import Cell, Scene, derivative, off
 
 ROUNDING, DIFFERENCED = 1e-11, 1e-8
 # Step of second differences of fourth order in time [s]; they leave 2e-9 of the force, and more than 1e-8 at a third

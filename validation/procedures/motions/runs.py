@@ -14,9 +14,9 @@ from scipy.spatial.transform import Rotation
 import symofros as sf
 from symofros.tools import METHODS
 
-from ..mechanics.geometry import Array
-from ..mechanics.rod import StrainRod
-from .scene import Cell, Scene, off
+from ...mechanics.geometry import Array
+from ...mechanics.rod import StrainRod
+from ..scene import Cell, Scene, off
 from .steps import STEPS, Path, alpha_run, repeated_run, variational_run
 
 # Rounding of some ten steps; where a Jacobian is of finite differences, what these leave; where steps are chosen by an

@@ -14,9 +14,9 @@ import numpy as np
 
 import symofros as sf
 
-from ..contract.quantities import ROUNDING
-from ..mechanics.geometry import Array, skew
-from .scene import Cell, Scene, off
+from ...contract.quantities import ROUNDING
+from ...mechanics.geometry import Array, skew
+from ..scene import Cell, Scene, off
 
 # Poses in links, in joints' frames and in frames of their own; an inertia that is turned; an axis along another frame;
 # links welded before and behind joints; losses, limits, joints that mimic others; other units.

@@ -17,9 +17,9 @@ import numpy as np
 
 import symofros as sf
 
-from ..contract.quantities import ROUNDING
-from .exported import printed
-from .scene import Cell, Scene, off
+from ...contract.quantities import ROUNDING
+from ..formats.exported import printed
+from ..scene import Cell, Scene, off
 
 # Needs no compiler, and is a machine of its own.
 _TAPE = sf.Options(backend="tape")

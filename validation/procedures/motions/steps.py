@@ -15,8 +15,8 @@ from scipy.optimize import root
 
 from symofros.tools import METHODS
 
-from ..mechanics.geometry import Array
-from .scene import POSE, Scene, derivative, tangent
+from ...mechanics.geometry import Array
+from ..scene import POSE, Scene, derivative, tangent
 
 # Of equation (4): safety, damping, bounds of a step's growth; the smallest error that steers the next step.
 SAFETY, DAMPING, GROWTH, SHRINK, LUCKY = 0.9, 0.04, 8.0, 0.2, 1e-4

@@ -13,10 +13,10 @@ import numpy as np
 
 import symofros as sf
 
-from ..mechanics.geometry import Array
+from ...mechanics.geometry import Array
+from ..scene import Cell, Scene, off
 from .differences import robot
 from .files import as_mjcf, as_urdf
-from .scene import Cell, Scene, off
 
 WRITTEN, SAME = 1e-10, 0.5
 

@@ -12,12 +12,12 @@ import numpy as np
 
 import symofros as sf
 
-from ..comparison.retained import omitted_orders
-from ..contract.quantities import ROUNDING
-from ..mechanics.assembly import Mover, assemble
-from ..mechanics.geometry import Array
+from ...comparison.retained import omitted_orders
+from ...contract.quantities import ROUNDING
+from ...mechanics.assembly import Mover, assemble
+from ...mechanics.geometry import Array
+from ..scene import DIFFERENCE, Cell, Scene, off
 from .analyses import DIFFERENCED, SEED
-from .scene import DIFFERENCE, Cell, Scene, off
 
 # Function that has vector-Jacobian products -> its inputs, and its outputs.
 TRANSPOSED: Mapping[str, tuple[str, str]] = {

@@ -15,9 +15,9 @@ import numpy as np
 import symofros as sf
 from symofros.tools import find_toolchain
 
-from ..mechanics.geometry import Array
-from .analyses import DIFFERENCED
-from .scene import Cell, Scene, derivative, off
+from ...mechanics.geometry import Array
+from ..equations.analyses import DIFFERENCED
+from ..scene import Cell, Scene, derivative, off
 
 T_END, STEP = 0.1, 1e-3
 # The same steps in the same order; compiled with other flags, products are rounded otherwise.

@@ -15,16 +15,17 @@ import numpy as np
 
 import symofros as sf
 
-from ..comparison.errors import Comparison, Status, raised
-from ..comparison.participants import EPS
-from ..contract.conventions import Chart
-from ..contract.interface import NotOffered, States
-from ..contract.quantities import ROUNDING, SMALL, SOLVE
-from ..contract.raised import Raised, attempted
-from ..mechanics.assembly import Assembly
-from ..mechanics.geometry import Array
-from . import ENGINE, analyses, identities
-from .scene import DIFFERENCE, Cell, Manifold, Scene
+from ...comparison.errors import Comparison, Status, raised
+from ...comparison.participants import EPS
+from ...contract.conventions import Chart
+from ...contract.interface import NotOffered, States
+from ...contract.quantities import ROUNDING, SMALL, SOLVE
+from ...contract.raised import Raised, attempted
+from ...mechanics.assembly import Assembly
+from ...mechanics.geometry import Array
+from .. import ENGINE
+from ..scene import DIFFERENCE, Cell, Manifold, Scene
+from . import analyses, identities
 
 # Accelerations of light ends change faster than other functions: what fourth order leaves of them.
 SOLVED = 1e-6

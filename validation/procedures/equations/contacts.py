@@ -13,11 +13,11 @@ import numpy as np
 
 import symofros as sf
 
-from ..contract.quantities import ROUNDING
-from ..mechanics.assembly import assemble
-from ..mechanics.geometry import Array
+from ...contract.quantities import ROUNDING
+from ...mechanics.assembly import assemble
+from ...mechanics.geometry import Array
+from ..scene import Cell, Manifold, Scene, derivative, off
 from .analyses import DIFFERENCED
-from .scene import Cell, Manifold, Scene, derivative, off
 
 RADIUS, STIFFNESS, LOSS, GRIP, SLOW = 0.1, 1e3, 0.4, 0.6, 0.05
 POINTS = ((0.2, 0.1, -0.1), (-0.1, 0.0, 0.15))

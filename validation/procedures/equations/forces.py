@@ -10,9 +10,9 @@ import numpy as np
 
 import symofros as sf
 
-from ..mechanics.assembly import assemble
-from ..mechanics.geometry import Array
-from .scene import Cell, Manifold, Scene, derivative, off
+from ...mechanics.assembly import assemble
+from ...mechanics.geometry import Array
+from ..scene import Cell, Manifold, Scene, derivative, off
 
 ROUNDING, DIFFERENCED = 1e-11, 1e-7
 # Formula of a coordinate q and the next one p -> the same by NumPy.

@@ -11,9 +11,9 @@ from scipy.spatial.transform import Rotation
 
 import symofros as sf
 
-from ..mechanics.assembly import Mover, assemble
-from ..mechanics.geometry import Array
-from .scene import Cell, Scene, derivative, freedoms, off
+from ...mechanics.assembly import Mover, assemble
+from ...mechanics.geometry import Array
+from ..scene import Cell, Scene, derivative, freedoms, off
 
 # Rounding of solutions; what central differences of fourth order leave; where Newton's method stops.
 SOLVED, DIFFERENCED, CONVERGED = 1e-9, 1e-7, 1e-7

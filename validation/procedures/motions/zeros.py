@@ -11,8 +11,8 @@ import numpy as np
 
 import symofros as sf
 
-from .machines import TAPE
-from .scene import Cell, Scene, off
+from ..machines import TAPE
+from ..scene import Cell, Scene, off
 
 LOCATED = 1e-8
 _T_END = 2.0

@@ -1,0 +1,1 @@
+"""The equations at a state: derivatives, identities, forces, reactions, contacts, beams."""

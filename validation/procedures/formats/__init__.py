@@ -1,0 +1,1 @@
+"""Files that are read, written and exported, and differences of models."""

@@ -1,0 +1,1 @@
+"""Runs and steps: every method, events, batches, steps by hand, notes."""
