@@ -12,7 +12,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from tests.description.test_nonsense import NONSENSE, NOUNS
+from tests.description.hostile.test_nonsense import NONSENSE, NOUNS
 
 # Pages and windows wait for a browser; nouns have a test of their own; the others are modules.
 _APART = {"view", "Viewer", "record", "interop", "solids", "sections", *(noun.__name__ for noun in NOUNS)}

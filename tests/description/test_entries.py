@@ -10,7 +10,7 @@ from typing import Any
 import pytest
 
 import symofros as sf
-from tests.description.test_nonsense import NOUNS
+from tests.description.hostile.test_nonsense import NOUNS
 
 
 @pytest.mark.parametrize("cls", [noun for noun in NOUNS if noun is not sf.Rotation])  # Its calls are those of makers.

@@ -53,10 +53,10 @@ _MIRRORS = {
     # What packages and frameworks alone call.
     "symofros/native/stepping/instances/instance.c": (
         "tests/exports/c/test_c_package.py",
-        "tests/exports/fmi/test_fmu.py",
+        "tests/exports/fmi/test_fmu_calls.py",
     ),
     "symofros/native/stepping/instances/linearize.c": (
-        "tests/exports/fmi/test_fmu.py",
+        "tests/exports/fmi/test_fmu_calls.py",
         "tests/exports/c/test_c_package.py",
     ),
     # Steps by hand, signals, and what is written of formulas.
@@ -166,7 +166,7 @@ _GENERAL = {
     "symofros/generator": ("tests/generator/codegen/test_c_equals_interpreter.py",),
     "symofros/simulation": ("tests/simulation/test_simulate.py", "tests/simulation/stepping/test_orders.py"),
     "symofros/native": ("tests/simulation/test_simulate.py", "tests/runtime/test_project.py"),
-    "symofros/description": ("tests/description/test_golden.py", "tests/description/joints/test_joint_kinds.py"),
+    "symofros/description": ("tests/description/golden/test_golden.py", "tests/description/joints/test_joint_kinds.py"),
 }
 
 

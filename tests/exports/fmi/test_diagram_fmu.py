@@ -22,7 +22,7 @@ from tests.diagrams.run.test_states_of_forces import driven
 from tests.diagrams.run.test_switching import CASES, Case
 from tests.diagrams.run.test_switching import diagram as alone
 from tests.exports.fmi.logs import heard
-from tests.exports.fmi.test_fmu import Unit, exported
+from tests.exports.fmi.units import Unit, exported
 from tests.exports.test_controller import conditional, inside, machine, rates
 from tests.exports.test_diagram import switching
 from tests.simulation.rigid_scenes import rod_system

@@ -15,7 +15,7 @@ from tests.diagrams.run.test_switching import CASES
 from tests.exports.c.test_events import BALL, STRIKE
 from tests.exports.c.test_rigid_contacts import SCENES, first
 from tests.exports.fmi.logs import heard
-from tests.exports.fmi.test_fmu import Unit, exported
+from tests.exports.fmi.units import Unit, exported
 from tests.simulation.rigid_scenes import WITHOUT_ANSWER, ball_system, rod_system, three_feet
 
 STRIKES = {**STRIKE, "heavy": sf.Event("t - 0.1", action={"dz": "dz - 1"}, once=True)}

@@ -11,7 +11,7 @@ import pytest
 from fmpy.validation import validate_fmu
 
 import symofros as sf
-from tests.exports.fmi.test_fmu import exported
+from tests.exports.fmi.units import exported
 
 _DRIVE: Any = {"dx": "4*sin(9*t)"}
 _ELEMENTS = sf.LuGre(2.0, 3e3, 20.0, static=3.0, stribeck_velocity=0.05), sf.Hysteresis(80.0, 0.5, 2.0)

@@ -13,7 +13,7 @@ from fmpy.simulation import FMICallException, instantiate_fmu
 import symofros as sf
 from tests.exports.cases import PLANAR
 from tests.exports.fmi.logs import heard
-from tests.exports.fmi.test_fmu import LIMP, Unit, exported
+from tests.exports.fmi.units import LIMP, Unit, exported
 
 SAME = 1e-12
 # Differences of fourth order by a relative step of 1e-3.

@@ -9,7 +9,7 @@ from pathlib import Path
 import fmpy
 import pytest
 
-from tests.exports.fmi.test_fmu import exported
+from tests.exports.fmi.units import exported
 from tests.pulses import END, SHAPES, cart, drawn
 
 # Of CVODE at FMPy's relative tolerance, 1e-4 a step; of dopri5 at its default bounds.

@@ -13,7 +13,7 @@ import symofros as sf
 from symofros.exports.fmi.fmu import fmi_headers
 from tests.exports.cases import STRICT, run, sanitizers
 from tests.exports.fmi.logs import lasting_log
-from tests.exports.fmi.test_fmu import Unit, exported, simulated
+from tests.exports.fmi.units import Unit, exported, simulated
 
 HERE = Path(__file__).parent
 HINGE = sf.System(

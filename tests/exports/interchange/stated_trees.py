@@ -9,7 +9,7 @@ import numpy as np
 
 import symofros as sf
 from reference_models.rigid.random_tree import random_tree
-from tests.description.hostile_names import HOSTILE
+from tests.description.hostile.hostile_names import HOSTILE
 
 # What URDF and MJCF hold; repeated: drawn more often.
 SERIES = ("revolute", "prismatic", "continuous", "universal", "cylindrical", "planar", "fixed")

@@ -224,9 +224,9 @@ def _nearest_direction(g: Graph, radius: Edge, a: Vec3, m: Vec3, d: Vec3) -> Vec
     alpha2 = g.div(g.mul(slant, slant), g.call("max", m.dot(m), tiny))
     beta2 = g.call("max", g.sub(d.dot(d), alpha2), ZERO)
     alpha, beta = g.sqrt(alpha2), g.sqrt(beta2)
-    room = g.call("max", g.mul(two, g.sub(g.mul(k, k), beta2)), tiny)
+    denominator = g.call("max", g.mul(two, g.sub(g.mul(k, k), beta2)), tiny)
     cube = g.div(g.mul(alpha2, g.mul(k, g.mul(k, k))), g.call("max", g.mul(g.constant(4.0), beta2), tiny))
-    least = g.call("min", g.div(g.mul(alpha, k), g.sqrt(room)), g.call("pow", cube, g.constant(1.0 / 3.0)))
+    least = g.call("min", g.div(g.mul(alpha, k), g.sqrt(denominator)), g.call("pow", cube, g.constant(1.0 / 3.0)))
     sigma = g.call("max", g.call("max", alpha, g.sub(beta, k)), g.call("max", least, tiny))
     for _ in range(_SECULAR_STEPS):
         multiplier = g.add(sigma, k)

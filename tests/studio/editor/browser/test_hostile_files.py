@@ -8,7 +8,7 @@ from pathlib import Path
 import pytest
 from playwright.sync_api import Browser, Page, expect
 
-from tests.description.test_hostile import CASES
+from tests.description.hostile.test_hostile import CASES
 from tests.models import sampled
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.conftest import Serve

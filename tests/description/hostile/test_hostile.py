@@ -30,7 +30,7 @@ SECONDS = 120.0
 # The reading process sees the packages that this one does, from another folder.
 _ROOT = str(Path(sf.__file__).parent.parent)
 MEBIBYTES = 700
-EVERYTHING = Path(__file__).parents[2] / "validation" / "corpus" / "everything.yaml"
+EVERYTHING = Path(__file__).parents[3] / "validation" / "corpus" / "everything.yaml"
 
 # A process that has the readers ready, their validators too, forks one process a file, whose memory is its own.
 _READERS = Path(__file__).with_name("readers.py.in").read_text()

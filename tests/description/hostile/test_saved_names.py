@@ -10,11 +10,11 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from tests.description.hostile_names import HOSTILE, hostile_system
+from tests.description.hostile.hostile_names import HOSTILE, hostile_system
 from tests.description.sdf import models as sdf_models
 from tests.description.usd import models as usd_models
 
-ROOT = Path(__file__).parents[2]
+ROOT = Path(__file__).parents[3]
 SEEDS = range(300)
 PRINTABLE = [name for name in HOSTILE if name.isprintable()]
 INTERPRETER = sf.Options(backend="interpreter")

@@ -12,7 +12,7 @@ from symofros.base.names import RESERVED, coordinate_of, rate_symbol, speed_of, 
 from symofros.description.parser import parse
 from symofros.description.quoting import readings, text_among, with_quotes
 from symofros.expr.expression import CONSTANTS, Expression, always_quoted, spelled
-from tests.description.hostile_names import HOSTILE
+from tests.description.hostile.hostile_names import HOSTILE
 
 NAMES = st.one_of(
     st.sampled_from(HOSTILE),

@@ -71,7 +71,7 @@ system: {name: arm}
 bodies:
   link: {joint: {name: q1, kind: revolute}, inertia: {mass: 1, moments: [1, 1, 1]}}
 """
-FORCES = Path(__file__).with_name("all_forces.yaml").read_text()
+FORCES = (Path(__file__).parents[1] / "all_forces.yaml").read_text()
 
 
 def fault(change: str, folder: Path) -> str:

@@ -1,0 +1,78 @@
+"""What FMUs log or refuse in a run: beams beyond their theory, quaternions of another length."""
+
+from __future__ import annotations
+
+import math
+import re
+from typing import Any
+
+import fmpy
+import pytest
+
+from tests.exports.fmi.units import ONE_VERSION, VERSIONS, simulated
+from tests.simulation.beam_models import at_rest
+
+
+@pytest.mark.parametrize("version", ONE_VERSION)
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+def test_beams_beyond_their_theory_are_reported(made: Any, version: int, kind: str) -> None:
+    """A warning from 1 % on; beyond the limit a step of Co-Simulation is discarded, and Model Exchange is ended."""
+    remarks: dict[float, list[str]] = {}
+    ends: dict[float, float] = {}
+    for g in (0.2, 0.5, 60.0):
+        given = {"stop_time": 1.0, "output_interval": 0.01, "start_values": {"par.g": g}}
+        run, log = simulated(str(made("limp", version)), fmi_type=kind, **given)
+        ends[g] = math.nan if run is None else float(run["time"][-1])
+        remarks[g] = [line for line in log if "second-order theory errs" in line]
+    assert not remarks[0.2] and ends[0.2] == pytest.approx(1.0)
+    assert len(remarks[0.5]) == 1 and "'blade'" in remarks[0.5][0] and ends[0.5] == pytest.approx(1.0)
+    assert remarks[60.0] and not ends[60.0] == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize("version", ONE_VERSION)
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+def test_logs_report_the_error_of_beam_theory_at_rest(made: Any, version: int, kind: str) -> None:
+    """Axial loads count, at the present length."""
+    for share, L in ((0.95, 1.0), (0.9, 0.1), (0.8, 1.0), (-5.0, 10.0)):
+        model, rest = at_rest(share, L)
+        start = {f"par.{name}": value for name, value in model.parameters.items()}
+        start |= {f"q.'{name}'": value for name, value in zip(model.names.q, rest.q.tolist(), strict=True)}
+        given = {"stop_time": 0.1 * L**2, "output_interval": 0.005 * L**2, "start_values": start}
+        run, log = simulated(str(made("column", version)), fmi_type=kind, **given)
+        assert run is not None
+        stated = [re.search(r"errs by about ([\d.]+) %", line) for line in log if "second-order theory errs" in line]
+        wanted = [100.0 * rest.bendings[0].error] if rest.bendings[0].error > 0.01 else []
+        assert [float(match[1]) for match in stated if match] == pytest.approx(wanted, rel=0.05)
+
+
+@pytest.mark.parametrize("scale", [0.0, 2.0, -1e150, 1.0 + 1e-6])
+def test_start_quaternions_are_normalised_or_refused(made: Any, scale: float) -> None:
+    """A start of another length is refused in words; one of few digits is a rotation."""
+    path = str(made("floating", VERSIONS["floating"]))
+    start = {name: scale * value for name, value in quaternion_start(path).items()}
+    run, log = simulated(path, stop_time=0.01, output_interval=0.005, start_values=start)
+    if abs(scale - 1.0) < 1e-3:
+        assert len(run) == 3
+    else:
+        assert run is None and any("no rotation" in line for line in log)
+
+
+@pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
+@pytest.mark.parametrize("length", [0.0, 1.01, -1.0])
+def test_input_quaternions_are_normalised_or_refused(made: Any, kind: Any, length: float) -> None:
+    path = str(made("turned", 3))
+    inputs = [v.name for v in fmpy.read_model_description(path).modelVariables if v.causality == "input"]
+    (last,) = (name for name in inputs if name.rstrip("'").endswith("qw"))
+    run, log = simulated(path, fmi_type=kind, stop_time=0.01, output_interval=0.005, start_values={last: length})
+    if length == -1.0:
+        assert len(run) == 3
+    else:
+        assert run is None
+        assert any("inputs that prescribe a motion" in line and "no rotation" in line for line in log)
+
+
+def quaternion_start(path: str) -> dict[str, float]:
+    """Start values of the components of quaternions."""
+    variables = fmpy.read_model_description(path).modelVariables
+    ends = ("qx'", "qy'", "qz'", "qw'")
+    return {v.name: float(v.start) for v in variables if v.name.startswith("q.") and v.name.endswith(ends)}
