@@ -19,6 +19,7 @@ from symofros.diagrams.rates import Schedule, schedule
 from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.block_functions import Blocks
 from symofros.diagrams.run.examination.deep_contacts import contact_notes
+from symofros.diagrams.run.examination.faults import signal_notes
 from symofros.diagrams.run.examination.interpreted import notes_on_steps
 from symofros.diagrams.run.examination.joint_limits import joint_limit_notes
 from symofros.diagrams.run.examination.prescribed import judge_prescribed
@@ -187,6 +188,8 @@ class Simulation:
         notes += contact_notes(resolved, par, (run.t, run.q, run.v), run.values.__getitem__)
         if run.outcome.ok:
             notes += notes_on_steps(run, blocks, course, called, METHODS[method])
+            outputs = resolved.order
+            notes += signal_notes(run.t, lambda rows: ((source, run.values[source][rows]) for source in outputs))
         return replace(run, outcome=replace(run.outcome, notes=(*closing, *resolved.notes, *run.outcome.notes, *notes)))
 
 

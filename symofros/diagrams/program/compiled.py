@@ -166,7 +166,7 @@ class CompiledDiagram:
     toolchain: Toolchain | None
     options: Options
     sources: tuple[str, ...] = ()
-    _signals: dict[tuple[Source, ...], Kernel] = field(default_factory=dict)
+    _signals: dict[tuple[bool, tuple[Source, ...]], Kernel] = field(default_factory=dict)
 
     def __deepcopy__(self, memo: dict[int, Any]) -> CompiledDiagram:
         """Itself: nothing of it can be changed."""
@@ -184,12 +184,13 @@ class CompiledDiagram:
         """A model of a mechanism that has what tells the impulses of impacts and their energies."""
         return self.resolved.wired.models.impacts(name, self.options)
 
-    def signals(self, sources: Sequence[Source]) -> Kernel:
-        """A function of q, v, u, t, a, lam that gives some outputs."""
-        key = tuple(sources)
+    def signals(self, sources: Sequence[Source], by_numpy: bool = False) -> Kernel:
+        """A function of q, v, u, t, a, lam that gives some outputs, compiled unless NumPy is to evaluate it."""
+        key = by_numpy, tuple(sources)
         if key not in self._signals:
-            program = run_passes(fuser(self.resolved).signals(key))
-            unit, _ = unit_of(program, record_of(self.resolved, None), self.toolchain, self.options)
+            program = run_passes(fuser(self.resolved).signals(sources))
+            toolchain, options = (None, None) if by_numpy else (self.toolchain, self.options)
+            unit, _ = unit_of(program, record_of(self.resolved, None), toolchain, options)
             self._signals[key] = unit.kernels["signals", ""]
         return self._signals[key]
 

@@ -15,8 +15,11 @@ from symofros.diagrams.block import Shape
 from symofros.diagrams.program.compiled import CompiledDiagram
 from symofros.diagrams.program.point import AFTER
 from symofros.diagrams.wiring import Source
+from symofros.runtime.calls import Kernel
 from symofros.simulation.analysis.sliding import contact_dynamics
 from symofros.simulation.results.trajectory import Statistics
+
+_ALL = slice(None)
 
 
 class Crossed(NamedTuple):
@@ -87,17 +90,21 @@ class Records:
         wanted = [source for source in sources if source not in self._known]
         if not wanted:
             return
-        kernel = self.compiled.signals(wanted)
+        self._known.update(self.values(wanted, self.compiled.signals(wanted)))
+
+    def values(self, sources: Sequence[Source], kernel: Kernel, rows: slice = _ALL) -> dict[Source, Array]:
+        """Outputs at some of the records, by a function of `CompiledDiagram.signals` that gives them."""
         pre = kernel.prepare(self.par.reshape(1, -1))
         known = {"q": self.q, "v": self.v, "u": self.u, "t": self.t[:, np.newaxis]}
         arrays = [known[group] if group in known else self._after[AFTER.index(group) - 4] for group in AFTER]
-        n = len(self.t)
-        (values,) = kernel.run(n, pre, [np.ascontiguousarray(a) for a in arrays])
-        at, wired = 0, self.compiled.resolved.wired
-        for source in wanted:
+        n = len(self.t[rows])
+        (found,) = kernel.run(n, pre, [np.ascontiguousarray(a[rows]) for a in arrays])
+        at, wired, values = 0, self.compiled.resolved.wired, dict[Source, Array]()
+        for source in sources:
             size = math.prod(wired.shape(source))
-            self._known[source] = values[:, at : at + size].reshape(n, *wired.shape(source))
+            values[source] = found[:, at : at + size].reshape(n, *wired.shape(source))
             at += size
+        return values
 
     @cached_property
     def _after(self) -> tuple[Array, Array]:

@@ -24,6 +24,7 @@ from symofros.diagrams.run.examination.controllers import Rerun, RerunSpan, blam
 from symofros.diagrams.run.examination.deep_contacts import contact_notes
 from symofros.diagrams.run.examination.diagnosis import Ended, diagnose
 from symofros.diagrams.run.examination.examined import Energies, Examined
+from symofros.diagrams.run.examination.faults import signal_notes, signals_of
 from symofros.diagrams.run.examination.prescribed import judge_prescribed
 from symofros.diagrams.run.examination.remarks import remarks
 from symofros.diagrams.run.loop import RECORD, Loop, Task
@@ -123,7 +124,8 @@ def examined_run(task: PlannedRun, ended: Ended, given: Given, kept: Mapping[str
     outcome = blamed(outcome, resolved, again)
     outcome = judge_prescribed(outcome, resolved, records.t, signal)
     deep = contact_notes(resolved, resolved.layout.present(par, u), (t, q, v), signal)
-    outcome = replace(outcome, notes=(*outcome.notes, *deep))
+    unseen = signal_notes(t, signals_of(records)) if outcome.ok and not ended.loop.fault else ()
+    outcome = replace(outcome, notes=(*outcome.notes, *deep, *unseen))
     return _recorded(task, ended, outcome, bendings, kept)
 
 

@@ -10,9 +10,10 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array, real_array
+from symofros.diagrams.conditional import unconditional
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Place
-from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.errors import DescriptionError, ParameterError, Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.model import Model
 from symofros.simulation.options import DIAGRAM_CALL, SimulationOptions
 from symofros.simulation.settings import Settings, check_pace
@@ -50,7 +51,7 @@ def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
     Raises:
         UnknownNameError: There is no such parameter.
         SymofrosError: A value does not fit.
-        ParameterError: The description of a model refuses its parameters.
+        ParameterError: A block, or the description of a model, refuses its parameters.
     """
     layout = resolved.layout
     par = np.array(layout.par, dtype=np.float64)
@@ -82,9 +83,32 @@ def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
                 )
             )
         par[place.slice] = np.broadcast_to(array, place.shape).reshape(-1)
+    _refuse_fields(resolved, {key: place for key, place in layout.parameters.items() if ".".join(key) in given}, par)
     for model in resolved.wired.models.names if given else ():
         resolved.wired.models.check_parameters(model, par[layout.parameters["", model].slice])
     return par
+
+
+def _refuse_fields(resolved: Resolved, given: Mapping[tuple[str, str], Place], par: Array) -> None:
+    """Refuse values of a block's fields that the block itself refuses: it is made anew with them.
+
+    Raises:
+        ParameterError: With what blocks say.
+    """
+    problems: list[Problem] = []
+    for name in dict.fromkeys(name for name, _ in given):
+        block = unconditional(resolved.wired.blocks[name])
+        values: dict[str, Any] = {
+            field: par[place.slice].reshape(place.shape) if place.shape else float(par[place.start])
+            for (of, field), place in given.items()
+            if of == name and field in block.tunable
+        }
+        try:
+            replace(block, **values)
+        except DescriptionError as error:
+            problems += error.problems
+    if problems:
+        raise ParameterError(problems)
 
 
 def record_interval(record: Any, t0: float, t_end: float, dt: float | None) -> float:

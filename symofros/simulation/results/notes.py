@@ -246,9 +246,9 @@ NOTES: Mapping[str, NoteKind] = {
         "a larger dt, or a faster function of inputs",
     ),
     "signal not finite": NoteKind(
-        "block '…': output '…' is … at t = … s, by …",
-        "a block in Python of a diagram gave a number that is not finite, and the run went on",
-        "mend the block",
+        "block '…': output '…' is … at t = … s, …",
+        "a block of a diagram gave a number that is not finite: unread, or read through limits, it ended no run",
+        "mend the block, or its formula where it leaves its domain",
     ),
     "controller": NoteKind(
         "seen as: …",

@@ -1,9 +1,10 @@
-"""Run-time parameters of a diagram's models are judged by the models' descriptions."""
+"""Run-time parameters of a diagram are judged by the blocks and the models that they belong to."""
 
 from __future__ import annotations
 
 from functools import cache
 
+import numpy as np
 import pytest
 
 import symofros as sf
@@ -48,3 +49,38 @@ def test_known_parameters_are_listed_once() -> None:
         simulation().run(0.01, parameters={"nothing.like": 1.0})
     known = raised.value.problem.rule.removeprefix("known: ").split(", ")
     assert sorted(known) == ["goal.value", "plant.L", "plant.m"]
+
+
+@pytest.mark.parametrize(
+    ("block", "values", "says"),
+    [
+        (blocks.Saturation(name="b"), {"low": 5.0}, "low is above high"),
+        (blocks.Saturation(name="b"), {"low": 3.0, "high": 2.0}, "low is above high"),
+        (blocks.Saturation(name="b", high=[1.0, 2.0]), {"high": [1.0, -2.0]}, "low is above high"),
+        (blocks.Quantizer(name="b"), {"step": 0.0}, "above zero"),
+        (blocks.Relay(name="b", period=0.01), {"lower": 2.0}, "lower is below upper"),
+        (blocks.RateLimit(name="b", period=0.01), {"rising": -1.0}, "a rate above zero"),
+    ],
+)
+def test_runs_refuse_values_that_blocks_refuse(block: blocks.Block, values: dict[str, object], says: str) -> None:
+    """They ran, and gave numbers; within a part and on a condition, too."""
+    part = sf.Diagram("part")
+    part.add(block, u="one")
+    part.add(blocks.Constant(name="one", value=[1.0, 1.0] if np.ndim(getattr(block, "high", 0.0)) else 1.0))
+    part.outlets = {"y": "b"}
+    whole = sf.Diagram("whole")
+    whole.include("inner", part, None, sf.Condition(enabled="on"))
+    whole.add(blocks.Constant(name="on", value=1.0))
+    simulation = sf.Simulation(whole)
+    given = {f"inner/b.{field}": value for field, value in values.items()}
+    with pytest.raises(sf.ParameterError, match=rf"block 'inner/b': (.|\n)*{says}"):
+        simulation.interpret(0.01, parameters=given)
+    assert simulation.interpret(0.01, parameters={"on.value": 2.0}).outcome.ok
+
+
+def test_limits_that_change_together_are_judged_together() -> None:
+    diagram = sf.Diagram("limits")
+    diagram.add(blocks.Constant(name="one", value=1.0))
+    diagram.add(blocks.Saturation(name="b"), u="one")
+    run = sf.Simulation(diagram).interpret(0.01, parameters={"b.low": 3.0, "b.high": 4.0})
+    assert run["b.y"][-1] == 3.0
