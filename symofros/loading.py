@@ -129,7 +129,7 @@ def _checked(reading: Reading) -> tuple[System, tuple[Source, ...]]:
 
 
 def applicable(path: Path, arguments: Mapping[str, Any]) -> dict[str, Any]:
-    """Those arguments of `load` that the format of a file has a use for."""
+    """Arguments of `load` that the format of a file has a use for."""
     suffix, every = path.suffix.lower(), ("", _READABLE, "")
     return {name: value for name, value in arguments.items() if suffix in _FORMAT_OPTIONS.get(name, every)[1]}
 

@@ -42,7 +42,7 @@ class Taken(NamedTuple):
 
 @cache
 def import_statements(path: Path) -> tuple[ast.Import | ast.ImportFrom, ...]:
-    """Those of a file, within functions, too; found once for all rules."""
+    """Import statements of a file, within functions, too; found once for all rules."""
     return tuple(
         node for node in ast.walk(ast.parse(path.read_text())) if isinstance(node, ast.Import | ast.ImportFrom)
     )

@@ -99,7 +99,7 @@ def pytest_configure(config: pytest.Config) -> None:
 
 @pytest.hookimpl(tryfirst=True)
 def pytest_sessionstart(session: pytest.Session) -> None:
-    """Nothing that is made while tests are collected is let go of: the collector need not look for it."""
+    """Freeze all objects made during collection: the garbage collector need not look at them."""
     gc.disable()
     if session.config.getoption("numprocesses", None) and session.config.pluginmanager.has_plugin("terminalreporter"):
         session.config.pluginmanager.register(Progress(session.config.get_terminal_writer()))

@@ -31,7 +31,7 @@ class Bennett:
 
     @classmethod
     def drawn(cls, rng: np.random.Generator) -> Bennett:
-        """Of random proportions and masses."""
+        """A loop of random proportions and masses."""
         alpha, beta = float(rng.uniform(0.3, 1.0)), float(rng.uniform(1.2, 1.9))
         first, second, third = rng.uniform(0.3, 2.0, 3).tolist()
         return cls(float(rng.uniform(0.5, 2.0)), alpha, beta, (first, second, third))
@@ -74,7 +74,7 @@ class Bennett:
         return np.array([1.0, -ratio / (s * s + (ratio * c) ** 2), -1.0]) * rate
 
     def late(self, model: sf.Model, start: float, rate: float, end: float, t: float) -> float:
-        """By what angle the first hinge is off at time t, if it is at `end`: the kinetic energy stays what it was.
+        """Angle that the first hinge is off by at time t, if it is at `end`: the kinetic energy stays what it was.
 
         Args:
             model: The compiled system.

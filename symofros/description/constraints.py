@@ -337,12 +337,12 @@ class Touching(_OnCoordinates):
 
     @property
     def conditions(self) -> tuple[str, ...]:
-        """Its own name for the normal, with the axis for those across it."""
+        """Names of the conditions: the contact's own for the normal, with the axis for those across it."""
         return (self.name,) if self.axes == (2,) else tuple(f"{self.name}.{AXES[axis]}" for axis in self.axes)
 
     @property
     def on_speeds(self) -> tuple[str, ...]:
-        """Those across the normal: where a ball is has no part in how it rolls."""
+        """Names of the conditions on speeds: those across the normal, as rolling does not depend on where a ball is."""
         return () if self.axes == (2,) else self.conditions
 
 

@@ -35,7 +35,7 @@ NEIGHBOURS = (
 
 
 class Packages:
-    """What may be read for one description.
+    """Files that may be read for one description.
 
     Args:
         file: The description's file.

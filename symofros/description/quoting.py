@@ -75,7 +75,7 @@ def text_among(formula: Expression, symbols: Collection[str], both: Collection[s
 
 
 def without_quotes(formula: Expression, names: Collection[str]) -> list[str]:
-    """Those of some names that occur without quotes in a formula as it was written, sorted."""
+    """Names, sorted, that occur without quotes in a formula as it was written."""
     if not names or not formula.written:
         return []
     return sorted({text for kind, text, _ in tokenize(formula.written) if kind == "name"} & {*names})

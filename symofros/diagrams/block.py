@@ -153,7 +153,7 @@ class Terms:
     facing: Tensor | None = None
 
     def stated(self) -> dict[str, Tensor]:
-        """Those that are not None, by name."""
+        """Fields that are not None, by name."""
         return {item.name: value for item in fields(self) if (value := getattr(self, item.name)) is not None}
 
 

@@ -111,7 +111,7 @@ class OnCondition(Block):
         return {key: f"{key}{'_outside' * self.level}" for key in self.condition.signals()}
 
     def ports(self, environment: Environment) -> Ports:
-        """Those of the block, and the condition's signals."""
+        """Ports of the block, and the condition's signals."""
         ports = self.block.ports(environment)
         for port in ports.inputs:
             if port.name in self.inputs.values():
@@ -138,23 +138,23 @@ class OnCondition(Block):
         return output in self.initial or "" in self.initial
 
     def samples(self) -> Mapping[str, Signal]:
-        """Those of the block."""
+        """Samples of the block."""
         return self.block.samples()
 
     def notes(self, environment: Environment) -> Iterable[str]:
-        """Those of the block."""
+        """Notes of the block."""
         return self.block.notes(environment)
 
     def lock_inputs(self) -> tuple[str, ...]:
-        """Those of the block."""
+        """Lock inputs of the block."""
         return self.block.lock_inputs()
 
     def shown(self) -> tuple[Plot, ...]:
-        """Those of the block."""
+        """Plots of the block."""
         return self.block.shown()
 
     def parameters(self) -> dict[str, Array]:
-        """Those of the block."""
+        """Parameters of the block."""
         return self.block.parameters()
 
 
@@ -163,7 +163,7 @@ class Conditional(OnCondition):
     """A sampled block that runs on a condition; at other samples its memory and outputs stay."""
 
     def memory(self, environment: Environment) -> dict[str, Any]:
-        """That of the block, its outputs, and what the condition's signals were."""
+        """Memory of the block, its outputs, and what the condition's signals were."""
         own = {_OWN + key: value for key, value in self.block.memory(environment).items()}
         held = {_HELD + port.name: self.initial_value(port) for port in self.block.ports(environment).outputs}
         was = {ENABLED: {_WAS_ENABLED: 0.0}, TRIGGERED: {_WAS_ABOVE: -1.0}}

@@ -28,7 +28,7 @@ class Enabled(OnCondition):
     """A continuous block that is enabled and disabled at instants, which are located in time (12)-(14)."""
 
     def states(self, environment: Environment) -> Mapping[str, Any]:
-        """Those of the block."""
+        """States of the block."""
         return self.block.states(environment)
 
     def memory(self, environment: Environment) -> Mapping[str, Any]:
@@ -57,7 +57,7 @@ class Enabled(OnCondition):
         return {_ON: on, **self._begun(context, on, context.memory)}
 
     def _begun(self, context: EvaluationContext, begins: Tensor, before: Mapping[str, Tensor]) -> Values:
-        """What the block keeps: as at its start where it begins (1), else as before."""
+        """Memory of the block: as at its start where it is enabled anew (1), else as before."""
         first = {key: context.numbers(value) for key, value in self.block.memory(context.environment).items()}
         at_start = self.block.memory_at_start(replace(self.inside(context), memory=first))
         first = {_OWN + key: value for key, value in (first | dict(at_start)).items()}

@@ -24,7 +24,7 @@ VALUE = "value"
 
 @dataclass(frozen=True, kw_only=True)
 class Inlet(Block):
-    """What enters a diagram from outside.
+    """An input of a diagram from outside.
 
     Attributes:
         port: The signal, as far as it is stated or known from the inputs that it feeds; `default` is its start.

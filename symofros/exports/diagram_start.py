@@ -28,7 +28,7 @@ _PROBED = 0.125
 
 @dataclass(frozen=True)
 class FirstMotion:
-    """How a package begins.
+    """First motion of a package.
 
     Attributes:
         starts: First configuration and speeds of each part.

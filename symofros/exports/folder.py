@@ -18,7 +18,7 @@ _FORMAT = 1
 
 @dataclass(frozen=True)
 class Exported:
-    """What an export wrote.
+    """Files that an export wrote.
 
     Attributes:
         folder: Folder of the export.

@@ -80,7 +80,7 @@ def always_quoted(symbol: str) -> str:
 
 
 def needs_quotes(symbols: Iterable[str]) -> list[str]:
-    """Those of some symbols that formulas have between backquotes, the longest first."""
+    """Symbols that formulas have between backquotes, the longest first."""
     return sorted((name for name in symbols if spelled(name) != name), key=lambda name: (-len(name), name))
 
 
@@ -136,7 +136,7 @@ def lower(expression: Expression, graph: Graph, bindings: Mapping[str, Edge]) ->
 
 
 def _lowered(expression: Expression, graph: Graph, bindings: Mapping[str, Edge]) -> Edge:
-    """As `lower`; raises what the graph raises, and OverflowError for infinite constants beside what varies."""
+    """Lower without errors of our own: the graph's, and OverflowError for infinite constants beside variables."""
     kind = expression.kind
     if kind == "number":
         return graph.constant(expression.number)

@@ -91,7 +91,7 @@ class Sources:
         return self._of(function, frame, "H", "hessian", gradient)
 
     def hessians(self, function: str, frame: str, gradient: str, weights: str, count: int) -> Source:
-        """The same for each unit vector of weights, one below the other."""
+        """Hessian for each unit vector of weights, one below the other."""
         return self._of(function, frame, "H", "hessians", gradient if self._curved else "", weights, count)
 
     def _of(

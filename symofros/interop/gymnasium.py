@@ -34,7 +34,7 @@ _LARGEST_ANGLE = np.radians(12.0)  # Of a pole that still stands.
 
 @dataclass(frozen=True)
 class Task:
-    """What an agent does with a model.
+    """Task of an agent with a model.
 
     Attributes:
         model: Compiled model; its inputs u are the actions.

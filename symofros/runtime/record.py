@@ -374,5 +374,5 @@ class ModelRecord:
 
 
 def _no_modes(what: str, found: str, choose: str, remedy: str) -> SymofrosError:
-    """What has modes, where nothing chooses them."""
+    """Joints with modes, where nothing chooses them."""
     return SymofrosError(Problem(what, found, f"it has modes: {choose}", remedy))

@@ -46,29 +46,29 @@ class StatefulModel(Model):
         return type(self)(self._carried._like(par, threads, precision))
 
     def with_parameter_checks(self, checks: bool) -> Self:
-        """As of `Model`."""
+        """The same as in `Model`."""
         return type(self)(self._carried.with_parameter_checks(checks))
 
     def ready(self, wait: bool = True) -> Self:
-        """As of `Model`."""
+        """The same as in `Model`."""
         ready = self._carried.ready(wait)
         return self if ready is self._carried else type(self)(ready)
 
     def prepare(self, *names: str) -> None:
-        """As of `Model`."""
+        """The same as in `Model`."""
         self._carried.prepare(*names)
 
     def has(self, name: str) -> bool:
-        """As of `Model`."""
+        """The same as in `Model`."""
         return self._carried.has(name)
 
     @property
     def routes(self) -> Routes:
-        """As of `Model`."""
+        """The same as in `Model`."""
         return self._carried.routes
 
     def beams(self, par: ArrayLike | None = None) -> tuple[ElasticBeam, ...]:
-        """As of `Model`."""
+        """The same as in `Model`."""
         return self._carried.beams(par)
 
     def __reduce__(self) -> tuple[Any, ...]:
@@ -119,7 +119,7 @@ class StatefulModel(Model):
     def carry(
         self, q: ArrayLike | None, v: ArrayLike | None, z: ArrayLike | None
     ) -> tuple[ArrayLike | None, ArrayLike | None]:
-        """As of `Model`."""
+        """The same as in `Model`."""
         speeds = None if v is None else self._joined("v", v)
         return None if q is None else self._joined("q", q), speeds if z is None else super().carry(None, speeds, z)[1]
 

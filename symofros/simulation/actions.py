@@ -21,7 +21,7 @@ from symofros.simulation.events import Event, ModeEvent
 
 
 class Assignment(NamedTuple):
-    """What one action sets.
+    """An assignment by one action.
 
     Attributes:
         event: Index of the event.
@@ -35,7 +35,7 @@ class Assignment(NamedTuple):
 
 
 class StatedActions(NamedTuple):
-    """What the events of one model do, before anything is compiled.
+    """Actions of the events of one model, before anything is compiled.
 
     Attributes:
         assignments: In the order in which they are stated.

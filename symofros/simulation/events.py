@@ -109,7 +109,7 @@ class ModeEvent(Event):
 
     @property
     def acts(self) -> bool:
-        """It does: modes are chosen anew."""
+        """True: modes are chosen anew."""
         return True
 
     @property

@@ -279,7 +279,7 @@ def _between_samples(sampled: Sequence[Array], span: tuple[float, float]) -> lis
 
 
 def _evenly(rows: Array) -> Array:
-    """At most _INTERVALS of the rows, evenly spaced, the first and last included."""
+    """Evenly spaced rows, at most _INTERVALS, the first and last included."""
     if len(rows) <= _INTERVALS:
         return rows
     return np.asarray(rows[np.linspace(0, len(rows) - 1, _INTERVALS).astype(int)])

@@ -197,7 +197,7 @@ def _contradiction(
 
 
 def _off(model: Model, settings: Settings, initial: InitialStates, stepper: BatchStepper) -> npt.NDArray[np.bool_]:
-    """Which trajectories start off the constraints (n); as `check_start`, which refuses a single one."""
+    """Trajectories (n) that start off the constraints; as `check_start`, which refuses a single one."""
     n = initial.n
     if not model.nc:
         return np.zeros(n, dtype=np.bool_)

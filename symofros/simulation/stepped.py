@@ -52,11 +52,11 @@ class Stepped:
         )
 
     def __copy__(self) -> Any:
-        """As copy() does: two never share the memory that is stepped in."""
+        """The same as copy(): two never share the memory that is stepped in."""
         return self.copy()
 
     def __deepcopy__(self, memo: dict[int, Any]) -> Any:
-        """As copy() does; the model, which nothing changes, is shared."""
+        """The same as copy(); the model, which nothing changes, is shared."""
         return self.copy()
 
     def copy(self) -> Any:

@@ -28,7 +28,7 @@ def faults(path: Path, **options: Any) -> str:
 
 
 def faults_of(folder: Path, text: str | bytes, name: str, **options: Any) -> str:
-    """Everything that loading a text complains about."""
+    """All problems that loading a text reports."""
     with pytest.raises(sf.DescriptionError) as caught:
         load(folder, text, name, **options)
     return str(caught.value)

@@ -62,7 +62,7 @@ def in_cylinder(radius: float, length: float, hole: float) -> Callable[[float, f
 
 
 def in_ellipsoid(semi: tuple[float, float, float], hole: float) -> Callable[[float, float, float], tuple[Array, float]]:
-    """By the cosine of the polar angle; `hole` is the share of its size that is hollow."""
+    """Integrals over an ellipsoid by the cosine of the polar angle; `hole` is the share of its size that is hollow."""
 
     def at(a: float, b: float, c: float) -> tuple[Array, float]:
         r, angle, cosine = hole + (1 - hole) * a, 2 * np.pi * b, 2 * c - 1

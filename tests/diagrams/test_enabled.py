@@ -60,7 +60,7 @@ def whole(conditions: dict[str, sf.Condition], signal: str = "wave") -> sf.Diagr
 
 
 def spans(signal: str, t_end: float) -> Iterator[tuple[float, float, bool]]:
-    """From when to when the part is enabled, or is not."""
+    """Spans of time in which the part is enabled, or is not."""
     ends = [0.0, *(t for t in WAVE if t < t_end), t_end]
     if signal == "sampled":
         k = np.arange(int(np.ceil(10 * t_end)))

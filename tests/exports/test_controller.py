@@ -22,7 +22,7 @@ RUN = np.arange(STEPS) / 1000.0
 
 
 def rates() -> sf.Diagram:
-    """Nothing but samples, at three rates."""
+    """A diagram of samples alone, at three rates."""
     diagram = sf.Diagram("rates")
     diagram.add(blocks.Hold(name="slow", period=5e-3))
     diagram.add(blocks.JointPD(name="pd", kp=[50.0, 30.0], kd=[5.0, 3.0], period=1e-3), q_desired="slow")

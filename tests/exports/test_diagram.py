@@ -70,7 +70,7 @@ def ball() -> sf.Diagram:
 
 
 def still() -> sf.Diagram:
-    """Nothing moves between samples."""
+    """A diagram in which nothing moves between samples."""
     diagram = sf.Diagram("still")
     diagram.add(Counter(name="ticks", period=0.5))
     return diagram

@@ -22,7 +22,7 @@ def beam(root: str = "fixed", **fields: Any) -> sf.Beam:
 
 
 def closed(beam: sf.Beam, translations: tuple[str, ...] = ("x", "y"), rotations: tuple[str, ...] = ()) -> sf.System:
-    """Its tip held to the ground."""
+    """A beam, its tip held to the ground."""
     closure = sf.Closure("end", ("ground", "end"), ("strip", "tip"), translations, rotations)  # type: ignore[arg-type]
     return sf.System("held", (GROUND, beam), constraints=(closure,), gravity=(0, 0, 0))
 

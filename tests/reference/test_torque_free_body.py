@@ -15,7 +15,7 @@ TIMES = np.linspace(0.0, 6.0, 61)
 
 
 def started(model: sf.Model, w: Array) -> tuple[Array, Array]:
-    """At an arbitrary place, moving along and turning with w."""
+    """The body at an arbitrary place, moving along and turning with w."""
     quaternion = np.array([0.1, -0.5, 0.3, 0.7])
     q = np.concatenate([[1.0, 2.0, 3.0], quaternion / np.linalg.norm(quaternion)])
     return q, np.concatenate([[0.4, -0.1, 0.2], w])

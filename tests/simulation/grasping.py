@@ -51,7 +51,7 @@ def grabbing(pose: str = "", *, closed: bool = True, flexible: bool = False, noi
 
 @cache
 def model_of(**options: Any) -> sf.Model:
-    """Its model."""
+    """Model of the grasp."""
     return sf.compile(grabbing(**options))
 
 

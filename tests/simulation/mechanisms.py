@@ -72,7 +72,7 @@ def loop(lengths: Sequence[Any], ground: Any, axis: Vector = (0, -1, 0), **more:
 
 
 def turned() -> sf.System:
-    """A hinge q on a body whose rotation, the ball joint p, is prescribed."""
+    """A hinge q on a body with prescribed rotation, the ball joint p."""
     base = sf.RigidBody("base", sf.Joint("p", "ball", prescribed=True), sf.Inertia(1.0, moments=(1, 1, 1)))
     hinge = sf.Joint("q", "revolute", "base", axis=(0, 1, 0))
     return sf.System("turned", (base, sf.RigidBody("arm", hinge, sf.Inertia(1.0, (0.5, 0, 0)))))

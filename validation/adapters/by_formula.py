@@ -76,7 +76,7 @@ def _power(a: Any, b: Any) -> Series:
         return _OPERATIONS["exp"](_product(b, _OPERATIONS["log"](a)))
 
     def derivative(x: Any, order: int) -> Any:
-        """That of x^n; of a power that is differentiated away nothing is left, at zero either."""
+        """Derivative of x^n; of a power that is differentiated away nothing is left, at zero either."""
         factor = n.value if order == 1 else n.value * (n.value - 1.0)
         return factor * np.power(np.where(factor == 0.0, 1.0, x), n.value - order)
 

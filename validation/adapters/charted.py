@@ -158,7 +158,7 @@ class ChartedEngine(SolvedEngine):
         return self.asked(function, states, links=self.frames)
 
     def _jacobians(self, function: str, states: States) -> Array:
-        """Of frames (N, F, 6, nv): some bindings turn a matrix of one column into a vector."""
+        """Jacobians of frames (N, F, 6, nv): some bindings turn a matrix of one column into a vector."""
         return self._of_frames(function, states).reshape(len(states), len(self.frames), 6, self.chart.nv)
 
     def mass_matrix(self, states: States) -> Array:

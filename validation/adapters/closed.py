@@ -269,7 +269,7 @@ def _stacked(rows: list[tuple[Array, Array, Array]]) -> tuple[Array, Array, Arra
 
 
 def condition(M: Array, G: Array) -> float:
-    """By how much the multipliers amplify rounding: the square of the condition of G in the metric of M."""
+    """Factor by which the multipliers amplify rounding: the square of the condition of G in the metric of M."""
     worst = 1.0
     for one, row in zip(M, G, strict=True):
         s = _sizes(one, row)

@@ -93,7 +93,7 @@ class SymofrosEngine:
         return self.model.constraint_jacobian(states.q, u=states.u)
 
     def constraint_bias(self, states: States) -> Array:
-        """What G v' equals."""
+        """Right-hand side c of G v' = c."""
         return self.model.constraint_bias(states.q, states.v, u=states.u)
 
     def constraint_force(self, states: States) -> Array:

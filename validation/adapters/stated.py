@@ -38,7 +38,7 @@ class Stated:
 
     @property
     def joints(self) -> list[int]:
-        """For each joint of the description, the link after its last part."""
+        """Link after the last part of each joint of the description."""
         first = [group[0] for group in self.movers]
         return [k for k in range(len(first)) if k + 1 == len(first) or not first[k + 1].continues]
 

@@ -86,7 +86,7 @@ class Budget:
 
 
 class _Spent(BaseException):
-    """Not an Exception, so that it is not taken for a find and shrunk."""
+    """End of the time: no Exception, so that it is not taken for a find and shrunk."""
 
 
 class _Contradiction(Exception):

@@ -40,7 +40,7 @@ _ADDRESS = re.compile(r"(?:(?:tcp|tls)://)?(\[[0-9A-Fa-f:]+\]|[^\s:/\[\]]+):([0-
 
 @dataclass(frozen=True)
 class Pool:
-    """Who works.
+    """Processes or cluster that work on a campaign.
 
     Attributes:
         workers: Processes of this machine, if no cluster is named.
@@ -200,7 +200,7 @@ def sources() -> dict[str, str]:
 
 
 def execute(task: Task, folder: Path, hash: str, code: Mapping[str, str]) -> bytes:
-    """On a worker: do a batch, unless its part is there already.
+    """Do a batch on a worker, unless its part is there already.
 
     Args:
         task: Batch to do.

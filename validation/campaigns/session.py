@@ -114,7 +114,7 @@ def _complete(store: Store, plan: Plan, pool: Pool) -> None:
 
 @contextmanager
 def _bar(size: int, before: int) -> Iterator[Callable[[Task], None]]:
-    """On the error stream: a bar with rate and time left for a terminal, a line every tenth for a file."""
+    """Progress on the error stream: a bar with rate and time left for a terminal, a line every tenth for a file."""
     console = Console(stderr=True)
     with progress_bar(console) as bar:
         shown = bar.add_task("starting", total=size, completed=before)

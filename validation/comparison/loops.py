@@ -31,7 +31,7 @@ FUNCTIONS = ("mass_matrix", "constraint", "constraint_rate", "constraint_jacobia
 
 
 def assembled_states(system: sf.System, states: States, worst: float = WORST_CONDITION) -> States:
-    """Those of the states from which loops could be closed, with phi = 0 and G v = b; at most MOST.
+    """States from which loops could be closed, with phi = 0 and G v = b; at most MOST.
 
     Args:
         system: System with constraints.
@@ -49,7 +49,7 @@ def assembled_states(system: sf.System, states: States, worst: float = WORST_CON
 
 
 def _assembled(model: sf.Model, states: States, worst: float) -> States:
-    """Those of some states from which loops could be closed."""
+    """States, of those given, from which loops could be closed."""
     assemblies, kept = [], []
     for i in range(len(states)):
         try:

@@ -75,7 +75,7 @@ class RestatedEngine:
     frames: tuple[str, ...]
 
     def _order(self, names: tuple[str, ...], others: tuple[str, ...]) -> list[int]:
-        """For each name of the original its place here; other names stand in the same order."""
+        """Place here of each name of the original; other names stand in the same order."""
         if self.restated.same_order:
             return list(range(len(names)))
         return [others.index(name) for name in names]

@@ -92,7 +92,7 @@ def _turned_load(load: Any, R: Array) -> Any:
 
 
 def permuted(stated: sf.System, rng: np.random.Generator) -> Answer:
-    """Its bodies in another order, siblings among them; what is named is found by its name."""
+    """A system with its bodies in another order, siblings among them; what is named is found by its name."""
     if len(stated.bodies) < 2:
         return Unsupported("one body has no order")
     order = rng.permutation(len(stated.bodies))
@@ -209,7 +209,7 @@ def _frames_renamed(stated: sf.System, other: sf.System) -> dict[str, str]:
 
 
 def in_other_units(stated: sf.System, rng: np.random.Generator) -> Answer:
-    """Its numbers in units of other length, mass and time; parameters' values as numbers."""
+    """A system with its numbers in units of other length, mass and time; parameters' values as numbers."""
     del rng
     refused: list[Any] = [*stated.potentials, *stated.virtual_power]
     refused += [item for item in stated.constraints if isinstance(item, sf.Coupling | sf.Nonholonomic)]

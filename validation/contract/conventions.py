@@ -195,7 +195,7 @@ class Slot:
         return T
 
     def _rotation(self, axes: Axes, q: Array) -> Array:
-        """From the axes of the body to those of the engine's speeds."""
+        """Rotation from the axes of the body to those of the engine's speeds."""
         R_PB = quaternion_matrix(q[:, -4:])
         return self.mover.X_AP.R @ R_PB if self.grounded or axes == "link" else R_PB
 

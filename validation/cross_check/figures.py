@@ -25,7 +25,7 @@ def engine_label(engine: str) -> str:
 
 
 def _color(engine: str) -> str:
-    """That of its place among the engines; of others than those of ROUTES, of one more."""
+    """Color of an engine by its place among the engines; of others than those of ROUTES, of one more."""
     return SERIES[(list(ROUTES).index(engine) if engine in ROUTES else len(ROUTES)) % len(SERIES)]
 
 

@@ -202,7 +202,7 @@ def _model(model: ModelResult) -> Section:
 
 
 def _digest(record: Record) -> list[Block]:
-    """For a terminal of any width: a line a model, or where there are few, a line an engine and what it left out."""
+    """Summary for a terminal of any width: a line a model, or, of few, a line an engine and what it left out."""
     each = len(record.models) <= _DETAILED
     of = "engine" if each else "model"
     said = f"Worst comparison of each {of}: error relative to the largest entry, of its tolerance"

@@ -176,7 +176,7 @@ def unsupported(record: Record, unjudged: bool = False) -> list[tuple[str, str, 
 
 
 def left_out(record: Record) -> str:
-    """Of how many models each engine could not represent all, in a sentence; "" if there are none."""
+    """Sentence on how many models each engine could not represent at all; "" if there are none."""
     models: dict[str, set[str]] = {}
     for row in record.rows("unsupported"):
         models.setdefault(row.engine, set()).add(row.model)

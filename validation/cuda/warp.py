@@ -83,7 +83,7 @@ class _Side:
         )
 
     def _data(self, number: int) -> Any:
-        """So many worlds, in the states of the subject, which are repeated."""
+        """Data of so many worlds, in the states of the subject, which are repeated."""
         data = self._peer.make_data(self._described, nworld=number, nconmax=_ROOM, njmax=_ROOM)
         self._reset(data, number)
         return data

@@ -142,7 +142,7 @@ class HasLayout(Protocol):
 
     @property
     def slots(self) -> tuple[tuple[Slot, ...], ...]:
-        """For each link of the tree, in its order, the slots of its joints, without fixed and locked ones."""
+        """Slots of the joints of each link of the tree, in its order, without fixed and locked ones."""
 
 
 class EngineModel(HasLayout, Protocol):

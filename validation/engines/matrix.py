@@ -195,7 +195,7 @@ def _crashed(plugin: EnginePlugin, job: Job, red: Judged, ask: Ask) -> Judged:
 
 
 def _said(one: Judged, more: str) -> Judged:
-    """A judged answer with more words."""
+    """A judged answer with further words."""
     return replace(one, cell=replace(one.cell, words=": ".join(filter(None, (one.cell.words, more)))))
 
 

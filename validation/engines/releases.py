@@ -105,7 +105,7 @@ class _Process(Worker):
     crashes, seconds, _last = 0, 0.0, 0.0
 
     def ask(self, job: Job) -> Iterator[Answer]:
-        """As any engine, until it has crashed too often; at which state a crash comes is looked for all the same."""
+        """Ask as any engine does, until it has crashed too often; the state of each crash is still searched for."""
         answers, answer, own = super().ask(job), None, 0
         looks = not job.further and (bool(job.pieces) or len(job.functions) == 1)
         while max(self.crashes, own) < CRASHES or looks:

@@ -52,7 +52,7 @@ class _Found:
 
     @classmethod
     def of(cls, data: Data) -> _Found:
-        """Of the JSON of a report."""
+        """Findings of the JSON of a report."""
         cells, corrected = parts.cells(data), parts.cells(data, "corrected")
         groups = causes_of(cells, corrected=corrected)
         return cls(groups, shown.withdrawn(cells), stale(groups, [engine["name"] for engine in data["engines"]]))
@@ -154,7 +154,7 @@ def _facts(data: Data, found: _Found, all_proven: bool, sound: bool) -> tuple[Fa
 
 
 def _first(data: Data, found: _Found) -> Iterator[str]:
-    """Of each engine with causes: how many, and the heaviest."""
+    """Number of causes of each engine that has some, and the heaviest."""
     for name in sorted(engine["name"] for engine in data["engines"]):
         if own := found.by(name):
             heaviest = own[0]
@@ -178,7 +178,7 @@ def _engine(engine: Row, data: Data, found: _Found) -> Section:
 
 
 def _functions(engine: Row, data: Data) -> Section:
-    """On how many trees each function of an engine is right, red, or something else."""
+    """Numbers of trees on which each function of an engine is right, red, or something else."""
     names = engine["functions"]
     cells: dict[str, list[Row]] = {function: [] for function in data["functions"] if function in names}
     for cell in data["cells"]:
@@ -268,7 +268,7 @@ def _earlier(data: Data) -> Iterator[Text]:
 
 
 def _identities(data: Data) -> Table:
-    """On how many trees of all engines an identity holds, and where it does not."""
+    """Numbers of trees of all engines on which an identity holds, and where it does not."""
 
     def row(identity: str) -> tuple[str | Cell, ...]:
         own = [one for one in data["identities"] if one["identity"] == identity]

@@ -1,4 +1,4 @@
-"""From an engine's answer and the truth to a verdict."""
+"""Verdicts on an engine's answers by the truth."""
 
 from __future__ import annotations
 

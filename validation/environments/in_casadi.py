@@ -134,7 +134,7 @@ def _written(
 
 
 def _adam(subject: Subject) -> Callable[..., Mapping[str, Any]]:
-    """Its base floats; here it stands still: M and the bias of the joints, and M solved."""
+    """Functions of ADAM, its base floating but at rest: M and the bias of the joints, and M solved."""
     ca, adam = import_module("casadi"), import_module("adam.casadi")
     robot = adam.KinDynComputations(subject.urdf(), list(subject.model.names.q), gravity=np.array(subject.gravity))
     base, still = np.eye(4), np.zeros(6)

@@ -66,7 +66,7 @@ def run(subject: Subject, states: Sequence[int], turns: int) -> dict[str, Any]:
 
 
 def rows(subject: Subject, race: dict[str, Any], turns: int, fail: Fail) -> Iterator[Row]:
-    """Of one race that the program ran: each side against native C, which is timed here."""
+    """Rows of one race that the program ran: each side against native C, which is timed here."""
     function, states = race["function"], race["states"]
     reference = native(subject, function, states)
     expected, errors = reference.results(), {NATIVE: 0.0}

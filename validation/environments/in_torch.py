@@ -62,7 +62,7 @@ def _ours(subject: Subject) -> dict[str, Function]:
 
 
 def _adam(subject: Subject) -> dict[str, Function]:
-    """Its base floats; here it stands still: M and the bias of the joints, and M solved."""
+    """Functions of ADAM, its base floating but at rest: M and the bias of the joints, and M solved."""
     torch, adam = _torch(), import_module("adam.pytorch")
     gravity = torch.tensor(subject.gravity, dtype=torch.float64)
     joints = list(subject.model.names.q)

@@ -79,7 +79,7 @@ def raced(sides: Sequence[Side], states: int, turns: int) -> dict[str, list[floa
 
 
 def _taken(side: Side, rounds: int) -> int:
-    """Of so many calls, by the clock [ns]: frameworks compute in threads of their own."""
+    """Time of so many calls by the clock [ns]: frameworks compute in threads of their own."""
     call = side.call
     start = perf_counter_ns()
     for _ in range(rounds):

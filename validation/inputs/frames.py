@@ -9,7 +9,7 @@ MAX_FRAMES = 8
 
 
 def chosen_frames(assembly: Assembly) -> tuple[str, ...]:
-    """At most MAX_FRAMES frames that move, by a fixed rule: tips of branches first, then bodies that carry others.
+    """Frames that move, at most MAX_FRAMES, by a fixed rule: tips of branches first, then bodies that carry others.
 
     On each body it is the last described frame, which is the farthest out: extremity frames and what is fixed to a
     body come after the body. Where there are too many tips, they are taken at even distances.
@@ -24,7 +24,7 @@ def chosen_frames(assembly: Assembly) -> tuple[str, ...]:
 
 
 def _spread(items: list[int], most: int) -> list[int]:
-    """At most `most` of the items, evenly spaced, from the last backwards."""
+    """Evenly spaced items, at most `most`, from the last backwards."""
     if len(items) <= most:
         return items[::-1]
     return [items[-1 - (k * len(items)) // most] for k in range(most)]

@@ -153,7 +153,7 @@ class Assembly:
 
     @property
     def driven_joints(self) -> list[sf.Joint]:
-        """Those whose motion is: their coordinates, speeds and rates are inputs after all others, joint by joint."""
+        """Joints with prescribed motion: q, v and v' are inputs after all others, joint by joint."""
         return [described.joint for described in self.joints if described.joint.prescribed]
 
     @property

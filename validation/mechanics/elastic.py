@@ -152,7 +152,7 @@ class ElasticBeam(BeamSection):
         return Curve(value, partial, bend)
 
     def _functions(self, x: Array, order: int) -> Array:
-        """Of x, y, z displacement: derivatives by x of the shape functions (K, 3, n)."""
+        """Derivatives by x of the shape functions of the x, y, z displacements (K, 3, n)."""
         values = np.zeros((len(x), 3, self.beam.modes))
         for i, shape in enumerate(self._v):
             values[:, 1, i] = shape[order](x)

@@ -59,7 +59,7 @@ class TouchingBody:
 
     @property
     def R(self) -> Array:
-        """Its rotation at the start."""
+        """Rotation at the start."""
         return np.asarray(Rotation.from_rotvec(self.turn).as_matrix())
 
     @property

@@ -185,7 +185,7 @@ class Study:
         return True
 
     def _require_sound(self) -> None:
-        """Without a fault, `check` passes, and outputs are the same when they are computed again."""
+        """Require that `check` passes without a fault, and that outputs are the same when they are computed again."""
         for module in ("symofros/mechanics/beams/fields.py", "symofros/generator/units.py"):
             answer = self.overlay.ask(_CHECK_JUDGE, "judge", SOUND_LIMIT, module=module)
             if (answer["answer"] or {}).get("status") != "passed":

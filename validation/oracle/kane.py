@@ -245,7 +245,7 @@ class _Model:
         return loads
 
     def _ends(self, connection: sf.Connection) -> tuple[Any, Any, Any]:
-        """Both points, and the line between them."""
+        """Points of both ends, and the line between them."""
         one, two = (self.frame(*anchor)[1] for anchor in (connection.first, connection.second))
         return one, two, two.pos_from(one)
 

@@ -112,7 +112,7 @@ def _loads() -> sf.System:
 
 
 def _connected(system: sf.System, *names: str) -> sf.System:
-    """With springs and dampers: "down" to the ground, "across" from tip to root, "short" of no length."""
+    """A model with springs and dampers: "down" to the ground, "across" from tip to root, "short" of no length."""
     last = system.bodies[-1].name
     frame = _s.Frame("tip", ("a", 0.5, 0), _s.Rotation.rpy("a", 0, 0))
     system = _with(system, len(system.bodies) - 1, frames=(frame,))

@@ -10,12 +10,12 @@ from .problem import BenchmarkProblem, Point
 
 
 def usable(points: Iterable[Point]) -> list[Point]:
-    """Those that came to their end, with an error and a time that logarithms take."""
+    """Points of complete runs, with an error and a time that logarithms take."""
     return [p for p in points if not p.ended and 0.0 < p.error < math.inf and 0.0 < p.seconds < math.inf]
 
 
 def charted(problem: BenchmarkProblem, points: Iterable[Point]) -> list[Point]:
-    """Those worth a chart: errors far beyond what is asked for, or beyond all of a motion, are no accuracy."""
+    """Points worth a chart: errors far beyond those asked for, or beyond all of a motion, are left out."""
     worst = max((target.error for target in problem.targets), default=math.inf)
     return [p for p in usable(points) if p.error <= max(1e2 * worst, 1e-2)]
 

@@ -93,7 +93,7 @@ class Point:
 
 @dataclass(frozen=True)
 class Target:
-    """So much faster than an engine's best at the same error.
+    """Factor by which we are to be faster than an engine's best at the same error.
 
     Attributes:
         engine: The engine whose best is compared with ours.

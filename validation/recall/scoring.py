@@ -1,4 +1,4 @@
-"""From what is red at a fault's wrong release and at its right one to a score.
+"""Scores of suites from what is red at a fault's wrong release and at its right one.
 
 A red cell is *new* where it is red at the wrong release and at the right one is not asked, or less red; where there is
 no right release yet, every red cell of the wrong one is. New cells are put together into groups. A group *shows* the
@@ -100,7 +100,7 @@ class Scored:
         return tuple(one for one in self.others if not one.explained)
 
     def row(self) -> dict[str, object]:
-        """As JSON has it."""
+        """The score as an object of JSON."""
         return asdict(self) | {"alarms": len(self.alarms)}
 
 

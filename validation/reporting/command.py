@@ -96,7 +96,7 @@ class Run:
         self._told = -_PAUSE
 
     def expect(self, total: int, doing: str | None = None) -> None:
-        """So many steps are to be done."""
+        """State how many steps are to be done."""
         self._done, self._total = 0, total
         self.bar.reset(self._task, total=total, description=doing or self.topic.name)
         self._tell(f"{doing or self.topic.name}: {total} in all")
@@ -116,7 +116,7 @@ class Run:
             self._console.print(f"{self.seconds:7.1f} s  {text}", markup=False, highlight=False, soft_wrap=True)
 
     def reached(self, number: int) -> None:
-        """So many steps are done in all."""
+        """State how many steps are done in all."""
         self._done = number
         self.bar.update(self._task, completed=number)
 

@@ -47,7 +47,7 @@ class Provenance:
 
     @classmethod
     def of(cls, data: Any, present: str = "") -> Provenance:
-        """From the top of a report, and from what it says of the machine, which may be of several compilers.
+        """Provenance from the top of a report, and from what it says of the machine, which may be of several compilers.
 
         Args:
             data: JSON of the report.
@@ -99,7 +99,7 @@ def stamp() -> dict[str, Any]:
 
 
 def versions() -> dict[str, str]:
-    """Ours, Python's, and those of the packages that results depend on."""
+    """Versions of this package, of Python, and of the packages that results depend on."""
     installed = {"symofros": sf.__version__, "python": platform.python_version()}
     for name in _PACKAGES:
         try:

@@ -89,7 +89,7 @@ class FuzzResult:
 
 
 class _Hang(BaseException):
-    """Not an Exception, so that no reader takes it for a fault of its input."""
+    """End of the patience: no Exception, so that no reader takes it for a fault of its input."""
 
 
 class _Changed(Exception):

@@ -185,7 +185,7 @@ def _waits_section(waits: Sequence[Wait]) -> Section:
 
 
 def duration(seconds: float) -> str:
-    """Such as "0.50 s", "1.2 us"."""
+    """A duration as text: "0.50 s", "1.2 us"."""
     for unit, size in (("s", 1.0), ("ms", 1e-3), ("us", 1e-6)):
         if seconds >= (0.1 * size if unit == "s" else size):
             return f"{seconds / size:.3g} {unit}"

@@ -93,7 +93,7 @@ class LQR(Block):
         return K @ linear.basis.T
 
     def notes(self, environment: Environment) -> tuple[str, ...]:
-        """On a first state that is no rest: the gain is one about it, and holds the model beside what is asked for."""
+        """Notes on a first state that is no rest: the gain is one about it, and holds the model beside the target."""
         speed, a = environment.imbalance(self.model, self._nominal(environment))
         note = (
             f"model '{self.model}' is not at rest in its first state with the nominal inputs: '{speed}' accelerates by"

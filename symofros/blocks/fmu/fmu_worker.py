@@ -274,7 +274,7 @@ class _Held:
     """What the solver asks for inputs: they are held."""
 
     def apply(self, _t: float) -> None:
-        """Nothing changes between samples."""
+        """Do nothing between samples."""
 
 
 class Session:

@@ -169,7 +169,7 @@ class PythonBlock(ExternalBlock):
         )
 
     def feeds_through(self) -> bool:
-        """As stated."""
+        """Whether outputs depend on inputs at once, as stated."""
         return self.feedthrough
 
     def begin(self, environment: Environment) -> Running:

@@ -247,7 +247,7 @@ class KalmanFilter(_Linear):
         return np.asarray(K.T if self.period is None else K)
 
     def matrices(self) -> tuple[Array, Array, Array, Array]:
-        """Those of the estimate, of (u; y)."""
+        """Matrices A, B, C, D of the estimate, driven by (u; y)."""
         (A, B, C), L = self._given(), self._gain()
         n, m, p = len(A), B.shape[1], len(C)
         if self.period is None:

@@ -121,7 +121,7 @@ class Hold(Block):
     unit: str = ""
 
     def __post_init__(self) -> None:
-        """It has a sample time."""
+        """Require a sample time."""
         needs_period(self)
 
     def ports(self, environment: Environment) -> Ports:

@@ -31,7 +31,7 @@ _NO_CONTACTS, _NO_GRAVITY = 1 << 4, 1 << 7  # mjDSBL_CONTACT, mjDSBL_GRAVITY
 
 @dataclass(frozen=True)
 class Stated:
-    """What a compiled model does not say.
+    """Entries that a compiled model does not hold.
 
     Attributes:
         name: Name of the model.

@@ -58,7 +58,7 @@ def read_mjcf(
 
 @dataclass(frozen=True)
 class Document:
-    """What is handed to MuJoCo.
+    """A document as it is handed to MuJoCo.
 
     Attributes:
         text: MJCF of nothing but a tree of bodies.

@@ -15,7 +15,7 @@ from symofros.description.xml_nodes import Element
 
 @dataclass(frozen=True)
 class Texture:
-    """What a material's color is multiplied by.
+    """Factor of a material's color.
 
     Attributes:
         color: Mean of what MuJoCo makes (3), 0 to 1; ones for a picture.

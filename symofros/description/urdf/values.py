@@ -219,7 +219,7 @@ class Values:
 
 
 def finite_numbers(text: str, count: int) -> tuple[float, ...] | None:
-    """So many finite numbers between spaces; None where they are not that."""
+    """A given number of finite numbers between spaces; None where they are not that."""
     entries = text.split()
     numbers = tuple(float(word) if _NUMBER.match(word) else math.nan for word in entries)
     return numbers if len(numbers) == count and all(map(math.isfinite, numbers)) else None

@@ -65,7 +65,7 @@ def parsed(inp: Any, filename: str | None = None) -> Any:
 
 
 def guard(folders: Collection[str]) -> None:
-    """From here on open files inside of some folders alone, to which the caller may add, and start nothing."""
+    """Restrict this process: it opens files of some folders alone, to which the caller may add, and starts nothing."""
     writing = os.O_WRONLY | os.O_RDWR | os.O_CREAT | os.O_TRUNC | os.O_APPEND
 
     def hook(event: str, args: tuple[Any, ...]) -> None:
@@ -143,7 +143,7 @@ def expanded(file: str, folders: list[str], packages: Mapping[str, str], argumen
         return packages[name]
 
     def opened(inp: Any, filename: str | None = None) -> Any:
-        """As `parsed`; a missing file is xacro's error, which an optional include looks for."""
+        """Open a file that xacro includes; a missing one is xacro's error, which an optional include looks for."""
         try:
             document = parsed(inp, filename)
             if hasattr(document, "getElementsByTagName"):

@@ -150,7 +150,7 @@ class InputEntry(NounEntry, noun=Input, without=("name",)):
 
 
 class SystemEntry(Entry):
-    """What concerns the whole."""
+    """Entries that concern the whole system."""
 
     name: Name | None = None
     """Of the model; the file's name if not given."""

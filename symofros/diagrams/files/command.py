@@ -28,7 +28,7 @@ WINDOW = "window"
 
 @dataclass(frozen=True)
 class RunRequest:
-    """What the command line asks of a run; None and "" where it leaves things to the diagram.
+    """Settings of a run from the command line; None and "" where it leaves them to the diagram.
 
     Attributes:
         t_end: End time [s].

@@ -116,7 +116,7 @@ class _Writer:
         }
 
     def reference(self, setup: ModelSetup) -> Plain | None:
-        """To the file that a model came from; None where that is elsewhere, or says something else by now."""
+        """Reference to the file that a model came from; None where that is elsewhere, or says something else by now."""
         origin = setup.file
         if origin is None or not Path(origin.path).is_relative_to(self.folder):
             return None

@@ -284,7 +284,7 @@ def _model(
 
 
 def _problems(resolved: Resolved, part: Part, par: Array) -> list[Problem]:
-    """What is wrong with parameters (n, npar) of the mechanisms of a part whose events change some."""
+    """Faults of parameters (n, npar) of the mechanisms of a part, where events change some."""
     models, problems = resolved.wired.models, list[Problem]()
     for name in part.blocks:
         if name in resolved.layout.kept:

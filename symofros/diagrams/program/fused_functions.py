@@ -165,7 +165,7 @@ class Fuser:
         }
 
     def _free(self, at: Point, part: Part) -> list[Function]:
-        """Without constraints: accelerations of mechanisms, rates of states."""
+        """Accelerations of mechanisms and rates of states, without constraints."""
         layout = self._layout
         a = [ZERO] * part.nv
         for name in part.blocks:

@@ -64,7 +64,7 @@ class Kept(NamedTuple):
 
 @dataclass(frozen=True)
 class Part:
-    """What moves together between samples.
+    """Mechanisms and states that move together between samples.
 
     Attributes:
         blocks: Blocks with continuous states.

@@ -119,7 +119,7 @@ def part_switching(
 
 
 class _Places(NamedTuple):
-    """Where what belongs to a block's mechanism lies in a part.
+    """Places of the data of a block's mechanism in a part.
 
     Attributes:
         block: The block.

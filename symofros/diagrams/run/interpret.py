@@ -190,7 +190,7 @@ def _works(blocks: Blocks, beam: ElasticBeam, at: slice) -> tuple[float, float]:
 
 @dataclass(frozen=True)
 class Course:
-    """What is run, and how.
+    """The run: its parts and settings.
 
     Attributes:
         instants: Instants in order; the first is the start.
@@ -322,7 +322,7 @@ def run_interpreted(
 
 
 def _know(blocks: Blocks) -> None:
-    """All signals at the present point, with those that read accelerations and multipliers."""
+    """Compute all signals at the present point, then those that read accelerations and multipliers."""
     blocks.signals()
     if len(blocks.lam):
         blocks.accelerate()

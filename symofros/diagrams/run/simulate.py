@@ -131,7 +131,7 @@ def examined_run(task: PlannedRun, ended: Ended, given: Given, kept: Mapping[str
 
 @dataclass(frozen=True)
 class PlannedRun:
-    """What is run.
+    """A run before it starts.
 
     Attributes:
         compiled: Diagram.

@@ -132,14 +132,14 @@ class InterpretedKernel:
         return [output[0] for output in self._interpret(function, named, 1)]
 
     def _interpret(self, function: Function, inputs: Mapping[str, Array], n: int) -> list[Array]:
-        """This function or a part of it over n states; which nodes it needs is found at its first call."""
+        """Interpret this function or a part of it over n states; the nodes it needs are found at its first call."""
         evaluation = self._evaluations.get(id(function))
         if evaluation is None:
             evaluation = self._evaluations[id(function)] = FunctionEvaluation(self._program, function)
         return evaluation(inputs, n)
 
     def _motion(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
-        """Both forms, state by state: they have one solution."""
+        """Motion by both forms, state by state: they have one solution."""
         moved = []
         for k in range(len(outputs[0])):
             state = {name: values[min(k, len(values) - 1)][None] for name, values in named.items()}
@@ -182,7 +182,7 @@ class InterpretedKernel:
         return self._interpret(solver.parts[0], at, len(at["a"]))
 
     def _hessian(self, solver: Solver, named: Mapping[str, Array], outputs: list[Array]) -> list[Array]:
-        """At the motion that the terms determine: second derivatives of the residual, and its motion's first ones."""
+        """Second derivatives of the residual and first ones of the motion, at the motion that the terms determine."""
         M, _, G, c = outputs
         at, rank = self._with_adjoint(solver, named, outputs)
         (slopes,) = self._interpret(solver.parts[0], at, len(M))

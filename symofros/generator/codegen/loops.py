@@ -47,7 +47,7 @@ class Loop:
 
     @cached_property
     def columns(self) -> list[list[list[Leaf]]]:
-        """For each statement and each mention in it, the leaf that stands there in every iteration."""
+        """Leaves, in every iteration, that stand at each mention in each statement."""
         return [
             [list(column) for column in zip(*(body[j] for body in self.leaves), strict=True)] for j in range(len(self))
         ]

@@ -242,7 +242,7 @@ def vector_name(key: int) -> str:
 
 
 def _sum(terms: Sequence[tuple[Edge, Vector]], text: Callable[[Edge], str]) -> str:
-    """Such as "sym_minus(sym_scaled(c, p3), s, p4)"."""
+    """Text "sym_minus(sym_scaled(c, p3), s, p4)"."""
     result = ""
     for factor, vector in terms:
         name, number = vector_name(vector.key), text(factor)

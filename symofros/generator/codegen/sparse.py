@@ -47,7 +47,7 @@ class Pattern:
 
     @property
     def targets(self) -> list[int]:
-        """For each pair of entries of a column, the entry in their rows: column by column, row by row."""
+        """Entries in the rows of each pair of entries of a column: column by column, row by row."""
         starts = self.starts
         at = [{row: starts[k] + i for i, row in enumerate(column)} for k, column in enumerate(self.columns)]
         return [

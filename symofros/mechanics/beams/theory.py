@@ -176,7 +176,7 @@ class Interpolated(NamedTuple):
 
 
 class Judged(NamedTuple):
-    """By what a deformation is judged (docs/theory/beams.md, 6; rods.md, 6).
+    """Measures that a deformation is judged by (docs/theory/beams.md, 6; rods.md, 6).
 
     Attributes:
         counts: Number of coordinates of bend_y, bend_z and the others.

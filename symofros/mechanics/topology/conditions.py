@@ -26,7 +26,7 @@ Step = float | str | tuple[str, list[int]]
 
 
 class Condition(NamedTuple):
-    """What numbers of a description must satisfy.
+    """A condition on numbers of a description.
 
     Attributes:
         margins: Formulas of parameters, each of which has the sign.

@@ -77,7 +77,7 @@ class RigidBall(NamedTuple):
 
     @property
     def parameters(self) -> tuple[Parameter, ...]:
-        """Its parameters, at what they are unless a run sets them."""
+        """The contact's parameters, at what they are unless a run sets them."""
         names = (self.mode, *self.pushes, *self.way, self.apart)
         pole = () if self.contact.surface == "plane" else (Parameter(self.pole, 1.0),)
         return (*(Parameter(name, 0.0) for name in names), *pole)

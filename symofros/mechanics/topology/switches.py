@@ -68,7 +68,7 @@ def switch_problems(system: System) -> Iterator[Problem]:
 
 
 def switch_conditions(system: System) -> Iterator[Condition]:
-    """What says whether a constraint holds is 0 or 1: e (e - 1) >= 0 and e (1 - e) >= 0."""
+    """Conditions that a parameter that engages a constraint is 0 or 1: e (e - 1) >= 0 and e (1 - e) >= 0."""
     for switch in system.switches:
         e, one = Term(switch.engaged), Term(1.0)
         margins = (e * (e - one)).value, (e * (one - e)).value

@@ -47,7 +47,7 @@ class Progress:
                     _LINE.release()
 
     def __enter__(self) -> Self:
-        """Nothing is reported before a stage begins, as most libraries are in the cache."""
+        """Begin without a report: most libraries are in the cache."""
         return self
 
     def __exit__(

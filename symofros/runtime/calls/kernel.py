@@ -18,7 +18,7 @@ Precision = Literal["double", "single"]
 
 @dataclass(frozen=True)
 class Signature:
-    """What a function takes and returns.
+    """Inputs and outputs of a function.
 
     Attributes:
         name: Such as "mass_matrix".
@@ -159,7 +159,7 @@ class BatchKernel(Kernel, Protocol):
     def bind_batch(
         self, n: int, pre: Array, inputs: list[Array], outputs: list[Array], threads: int = 1
     ) -> Callable[[], None]:
-        """As `bind`, for n states, by the very code that `run` takes for so many.
+        """Bind arrays of n states, as `bind` does, to the very code that `run` takes for so many.
 
         Args:
             n: Number of states.

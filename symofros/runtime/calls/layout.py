@@ -62,7 +62,7 @@ def states(array: Numbers, batch: tuple[int, ...]) -> Numbers:
 
 
 def flat(array: Numbers, batch: tuple[int, ...]) -> Numbers:
-    """As rows (n or 1, size), contiguous: one row where the array has no batch of its own."""
+    """An array as contiguous rows (n or 1, size): one row where the array has no batch of its own."""
     size = array.shape[-1]
     if array.size == size:
         return np.ascontiguousarray(array.reshape(1, size))

@@ -240,7 +240,7 @@ class CompiledKernel:
     def _by_lanes(
         self, n: int, pre: Array, inputs: list[Numbers], options: BatchOptions, places: Sequence[Numbers | None]
     ) -> list[Numbers]:
-        """By vectors of this library; contiguous rows are passed by their addresses alone, which costs less."""
+        """Evaluate by vectors of this library; contiguous rows are passed by their addresses, which costs less."""
         if options.precision == "double" and not options.columns and all(x.flags.c_contiguous for x in inputs):
             return self._by_rows(n, [pre, *inputs], options.threads, places)
         return self._in_place(n, pre, inputs, options, places)

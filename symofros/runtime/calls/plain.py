@@ -85,7 +85,7 @@ def _through_numpy(kernel: Kernel, par: Array, u: Array, quaternions: Mapping[st
     def call(
         given: Mapping[str, Any], out: Mapping[str, Any] | None = None, /, _kept: object = (kernel, pre)
     ) -> list[Array] | None:
-        """As PlainCall says; C has the addresses of what is kept, and of all arrays."""
+        """Call the function (see PlainCall) at the addresses of all arrays, kept ones included."""
         if out is not None:
             return None
         for group, memory, shape, default in inputs:

@@ -161,7 +161,7 @@ def _along(along: list[Array], rows: Array) -> Array:
 
 
 def _largest_comparable(columns: Sequence[str], scale: Array) -> Array:
-    """Of each column the largest size among those with as high a power of length in their unit, or a lower one.
+    """Largest size, for each column, among columns with at most its power of length in their unit.
 
     Efforts by a second moment have none, by a first moment one, by a mass two: of a mechanism of a gigametre those by
     second moments are small beside the others, and are no rounding.

@@ -58,10 +58,10 @@ def notes_of(run: Stepper, met: Met) -> tuple[str, ...]:
         )
     if not met.done.rests:
         return notes
-    contact = f"event '{event.name}': the contact persists from t = {met.t:.12g} s on"
+    further = ""
     if event.restitution:
-        contact += f", where strikes would follow within {run.accumulation(met.t, event.restitution):.3g} s"
-    return (*notes, contact)
+        further = f", where strikes would follow within {run.accumulation(met.t, event.restitution):.3g} s"
+    return (*notes, f"event '{event.name}': the contact persists from t = {met.t:.12g} s on{further}")
 
 
 def failure_of(run: BoundRun, met: Met) -> Outcome | None:

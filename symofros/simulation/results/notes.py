@@ -12,7 +12,7 @@ _NUMBER = re.compile(r"[-+.\d]+(e[-+]?\d+)?")
 
 
 def distinct(notes: Iterable[str]) -> tuple[str, ...]:
-    """Of notes that differ in numbers alone the first."""
+    """Notes without those that differ from an earlier one in numbers alone."""
     first: dict[str, str] = {}
     for note in notes:
         first.setdefault(_NUMBER.sub("#", note), note)
@@ -20,7 +20,7 @@ def distinct(notes: Iterable[str]) -> tuple[str, ...]:
 
 
 def of_steps(notes: Iterable[str]) -> tuple[str, ...]:
-    """Those of notes that are about the steps of a run."""
+    """Notes that are about the steps of a run."""
     return tuple(note for note in notes if note.startswith(_OF_STEPS))
 
 

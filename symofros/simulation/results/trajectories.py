@@ -250,7 +250,7 @@ class StatefulTrajectories(Trajectories):
         return self.whole[index].of(self.model)
 
     def __str__(self) -> str:
-        """As of the runs of the carried model."""
+        """Text of the runs of the carried model."""
         return str(self.whole)
 
 

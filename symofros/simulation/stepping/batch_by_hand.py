@@ -159,7 +159,7 @@ class _Part(BatchStepper):
 
     @property
     def rows(self) -> slice:
-        """Its motions among all."""
+        """Rows of the motions of this part among all."""
         return slice(self._first, self._end)
 
     @property

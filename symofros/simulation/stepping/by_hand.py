@@ -220,7 +220,7 @@ class HandRun:
         self._known = -np.inf
 
     def _forget_bendings(self) -> None:
-        """Nothing is known of how far beams bend, as at the start of a run."""
+        """Forget how far beams bend, as at the start of a run."""
         run, memory, beams = self.run.run, self.run.memory, self.run.beams
         for array in self.run.beam_record:
             array[:] = 0.0

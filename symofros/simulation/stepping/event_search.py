@@ -45,7 +45,7 @@ class StepSearch:
         self.noted.evaluate = self._memory.callback(_EVALUATE, self._called)
 
     def restart(self) -> None:
-        """Nothing is known of steps before."""
+        """Forget the steps before."""
         self.values[constants()["SYM_EVENT_EARLIER"]] = np.nan
 
     def arrivals(self, t: float, h: float, way: float, number: int) -> Iterator[tuple[int, float]]:

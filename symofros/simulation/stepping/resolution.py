@@ -51,7 +51,7 @@ class Resolution:
     evident: bool = True
 
     def and_then(self, other: Resolution) -> Resolution:
-        """Of both: the mode of this one, but for one that steps amplify in the other."""
+        """Both resolutions in one: the mode of this one, unless steps amplify that of the other."""
         is_worse = self.worst is None or (other.worst is not None and other.worst.amplified)
         return Resolution(other.worst if is_worse else self.worst, self.evident and other.evident)
 

@@ -188,11 +188,11 @@ class Stepper(BoundRun):
         return int(self.native.sym_run_set_state(self.run, t, self._pointer(y)))
 
     def begin_step(self, t: float, end: float) -> None:
-        """From t on, held samples and jumps at `end`, or later, do not count; for integrators of others."""
+        """Leave held samples and jumps at `end` or later out, from t on; for integrators of others."""
         self.native.sym_run_begin_step(self.run, t, end)
 
     def end_step(self) -> None:
-        """Those that begin there count."""
+        """Take in held samples and jumps at the end of the step."""
         self.native.sym_run_end_step(self.run)
 
     def set_stops(self, t0: float, t_end: float) -> None:

@@ -163,7 +163,7 @@ class Advice:
         return "\n".join([f"{self.full.name}:", *(f"  {one}" for one in self.choices), *self.summary(), *self.notes])
 
     def to_json(self) -> dict[str, Any]:
-        """For programs: what `symofros advise --json` prints. An infinite error is null."""
+        """The advice for programs: what `symofros advise --json` prints. An infinite error is null."""
         return {
             "ok": self.ok,
             "model": self.full.name,

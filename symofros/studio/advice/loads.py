@@ -234,7 +234,7 @@ class Observed:
         )
 
     def _least_stiffness(self, beam: Beam, length: float) -> dict[Direction, float]:
-        """Of each direction that turns sections the least along the beam, no force acting along or across it."""
+        """Least stiffness along the beam of each direction that turns sections, without forces along or across it."""
         stiffness = section_law(beam, range(TURNING)).stiffness
         least = {}
         for direction in DIRECTIONS:

@@ -62,7 +62,7 @@ class Output(metaclass=CheckedCalls):
             )
 
     def values(self, run: Trajectory) -> Array:
-        """It over time (n, k).
+        """Values of the measured quantity over time (n, k).
 
         Raises:
             DescriptionError: The model has no such thing.

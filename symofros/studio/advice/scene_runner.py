@@ -54,7 +54,7 @@ class Stepping:
         return tight if self.dt is None else {**tight, "dt": self.dt}
 
     def __str__(self) -> str:
-        """Such as "rk4, dt = 0.01 s"."""
+        """Text such as "rk4, dt = 0.01 s"."""
         size = f"dt = {self.dt:.3g} s" if self.dt is not None else f"rtol = {self.rtol:.0e}"
         return f"{self.method}, {size}"
 

@@ -348,7 +348,7 @@ def _first(mechanism: Mechanism, part: int) -> str:
 
 
 def _below(mechanism: Mechanism) -> list[tuple[int, float]]:
-    """Of each part, the number of parts and the mass that it carries, itself included."""
+    """Number of parts and mass that each part carries, itself included."""
     counts = [1] * len(mechanism.parts)
     masses = [sum(body.mass for body in mechanism.massive(k)) for k in range(len(mechanism.parts))]
     for k in reversed(range(1, len(mechanism.parts))):

@@ -210,7 +210,7 @@ def _computed(text: str, folder: Path) -> tuple[float, Array, Array, Array]:
     robot, places = opened.GetPrimAtPath("/robot/b"), UsdGeom.XformCache()
 
     def of_shape(shape: Any) -> Any:
-        """Of a cube of unit density: the first one states its own mass properties."""
+        """Mass properties of a cube of unit density: the first one states its own."""
         size, known = (0.5 if shape.GetName() == "second" else 1.0), UsdPhysics.RigidBodyAPI.MassInformation()
         moment = size**5 / 6.0
         place = places.ComputeRelativeTransform(shape, robot)[0]

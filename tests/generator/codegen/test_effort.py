@@ -27,7 +27,7 @@ def program(g: Graph, edges: list[Edge]) -> Program:
 
 
 def chained(operations: int) -> Program:
-    """So many sums, one after the other."""
+    """A chain of so many sums."""
     g = Graph()
     total = g.input("q", 0)
     for i in range(operations):

@@ -24,7 +24,7 @@ def disc(friction: float, e: float = 0.0, half: float = 0.0, incline: float = 0.
 
 
 def tilted(model: sf.Model, angle: float, height: float = 0.0) -> Any:
-    """Its axis turned from the vertical, about x; its rim at a height."""
+    """A rim, its axis turned from the vertical, about x, at a height."""
     q = model.neutral()
     q[2], q[3], q[6] = height + RADIUS * sin(angle), sin(angle / 2), cos(angle / 2)
     return q
@@ -43,7 +43,7 @@ def axis(q: Any) -> Any:
 
 
 def to_contact(a: Any) -> Any:
-    """From the centre to the lowest point of the rim."""
+    """Vector from the centre to the lowest point of the rim."""
     s = UP - a[2] * a
     return -RADIUS * s / np.linalg.norm(s)
 

@@ -104,7 +104,7 @@ def test_functions_of_a_switched_model_are_those_with_and_without_its_constraint
 
 
 def _read_by(model: sf.Model, name: str, given: dict[str, Any]) -> dict[str, Any]:
-    """Those of some arguments that a function reads."""
+    """Arguments, of those given, that a function reads."""
     return {key: given[key] for key in FUNCTIONS[name].inputs if key in given}
 
 

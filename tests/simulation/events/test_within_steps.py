@@ -38,7 +38,7 @@ def lines(F: float, t: float, w: float) -> tuple[sf.Signal, float]:
 
 
 def sampled(F: float, t: float, w: float) -> tuple[sf.Signal, float]:
-    """At 100 Hz, mostly quiet."""
+    """A signal sampled at 100 Hz, mostly quiet."""
     times = np.linspace(0.0, END, 1001)
     values = np.where((times > t) & (times < t + w), F * np.sin((times - t) / w * np.pi), 0.0)
     return sf.Signal(times, values), float(np.trapezoid(values, times))

@@ -39,7 +39,7 @@ def searched(functions: list[Function], h: float) -> tuple[list[float], int]:
 
 
 def cubic(level: float, size: float, turn: float) -> Function:
-    """At the level at both ends of a step."""
+    """A cubic at the level at both ends of a step."""
     return lambda x: level + size * x * (1.0 - x) * (x - turn)
 
 

@@ -95,7 +95,7 @@ def _move(kind: str, axis: Array) -> Move:
 
 
 def _limits(limits: sf.Limits | None, sign: float, offset: float) -> sf.Limits | None:
-    """Of q' in q = sign q' + offset."""
+    """Limits of q' in q = sign q' + offset."""
     if limits is None or limits.lower is None or limits.upper is None:
         return limits
     ends = sorted((sign * (limits.lower - offset), sign * (limits.upper - offset)))

@@ -32,7 +32,7 @@ def asked(topic: str, folder: Path, *studies: str) -> tuple[int, dict[str, Any]]
 
 
 def assert_maps_say_why_they_have_no_number(study: dict[str, Any]) -> None:
-    """Nothing is silently wrong: what has no number has an outcome."""
+    """Check that each map without a number has an outcome."""
     for found in study["maps"].values():
         ended, values = np.array(found["ended"]), np.array(found["values"], dtype=object)
         assert values.shape == (len(found["y"]), len(found["x"]))

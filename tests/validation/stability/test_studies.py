@@ -17,7 +17,7 @@ from validation.stability.study import Cell, Maps, survey
 
 
 class CoarseMaps(dict[str, Maps]):
-    """Of each study that is asked for."""
+    """Coarse maps of each study that is asked for."""
 
     def __missing__(self, name: str) -> Maps:
         self[name] = survey(STUDIES[name], quick=True)

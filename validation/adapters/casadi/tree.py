@@ -62,12 +62,12 @@ class CasadiTree:
         return (ZERO, along) if link.slides else (along, ZERO)
 
     def _carried(self, link: Link, w: SX, turning: SX, a: SX) -> Motion:
-        """Of a parent with velocity w and acceleration (turning, a): the same at the child's origin, in its axes."""
+        """Acceleration (turning, a) of a parent with velocity w, taken to the child's origin, in its axes."""
         moved = a + ca.cross(turning, link.p) + ca.cross(w, ca.cross(w, link.p))
         return link.R.T @ turning, link.R.T @ moved
 
     def _motions(self, rates: SX | None) -> list[tuple[SX, SX, SX]]:
-        """Of each body: w, its rate, and the acceleration of its origin less gravity, in body axes."""
+        """Motion of each body: w, its rate, and the acceleration of its origin less gravity, in body axes."""
         motions: list[tuple[SX, SX, SX]] = []
         for link in self.links:
             w_A, turning_A, a_A = motions[link.parent] if link.parent != BASE else (ZERO, ZERO, self._up)
@@ -157,7 +157,7 @@ class CasadiTree:
         return self._accelerated(steps, [own for _, own in terms])
 
     def _velocity_terms(self) -> list[tuple[SX, Motion]]:
-        """Of each body: w, and what accelerates it without its joint's and its parent's acceleration."""
+        """Velocity terms of each body: w, and its acceleration without its joint's and its parent's."""
         terms: list[tuple[SX, Motion]] = []
         for link in self.links:
             w_A = terms[link.parent][0] if link.parent != BASE else ZERO
@@ -247,7 +247,7 @@ class CasadiTree:
         return [_rows(ca.jacobian(slope, x)) for slope, x in pairs]
 
     def _gradients(self, outputs: SX, cotangents: SX) -> list[SX]:
-        """Of cotangents . outputs by q and v, in reverse mode; the cotangents are what the outputs don't read."""
+        """Gradients of cotangents . outputs by q and v, in reverse mode."""
         return [ca.jtimes(outputs, x, cotangents, True) for x in (self.q, self.v)]
 
     def _forward_slopes(self) -> list[SX]:

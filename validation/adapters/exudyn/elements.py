@@ -120,7 +120,7 @@ class Elements:
         return Refined(title, powers, [one.M for one in terms]), Refined(title, powers, [one.h for one in terms])
 
     def _cables(self, part: Mesh, root: Carried, states: AllSpeeds) -> Terms:
-        """Of mass and weight along the axis: nodes have the places and the slopes of our field."""
+        """M and h of mass and weight along the axis: nodes have the places and the slopes of our field."""
         q, v = states.q[:, self.q], states.v[:, self.v]
         _, J, a = carried.arrow(root, states, self.v, self.beam.axis(part.x, q, v))
         _, slopes, slopes_bend = carried.arrow(root, states, self.v, self.beam.tangent(part.x, q, v))
@@ -131,7 +131,7 @@ class Elements:
         return Terms(J_x.swapaxes(1, 2) @ (part.M @ J_x), np.einsum("nxi,nx->ni", J_x, forces))
 
     def _turning(self, system: ExudynSystem, x: Array, root: Carried, states: AllSpeeds) -> Terms:
-        """Of what turns; without rotary inertia sections turn about one axis alone, the root's or a rod's own."""
+        """M and h of the sections' rotation; without rotary inertia about one axis alone, the root's or a rod's own."""
         q, v = states.q[:, self.q], states.v[:, self.v]
         if isinstance(self.beam, StrainRod):
             sections = self.beam.rotation(x, q, v)

@@ -54,7 +54,7 @@ SECTION = ("rhoA", "EI_z", "EI_y", "GJ", "rhoJ", "rhoI_y", "rhoI_z")
 
 
 class Translation:
-    """From a description to nodes, one for each mover of its assembly, in the same order.
+    """Nodes of a description, one for each mover of its assembly, in the same order.
 
     Args:
         system: The description.
@@ -115,7 +115,7 @@ class Translation:
         )
 
     def _first(self, mover: Mover) -> tuple[int, int]:
-        """Its first coordinate and speed; parts of a joint need not come in the order of its coordinates."""
+        """First coordinate and speed of a joint; its parts need not come in the order of its coordinates."""
         if not mover.joint.prescribed:
             return mover.q.start, mover.v.start
         names = [joint.name for joint in self.assembly.driven_joints]

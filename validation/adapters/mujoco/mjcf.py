@@ -42,7 +42,7 @@ class MjcfEngine(ChartedEngine):
     places: tuple[tuple[str, int], ...] = ()
 
     def generalized_force(self, states: States) -> Array:
-        """Its passive forces; what the inputs add, which it knows nothing of, is taken as stated."""
+        """MuJoCo's passive forces; what the inputs add, which it knows nothing of, is taken as stated."""
         forces = self._of_data(states, lambda d: np.array(d.qfrc_passive))
         return self.chart.our_forces(states.q, forces) + states.applied - states.passive
 

@@ -54,7 +54,7 @@ def charted(name: str, model: Any, slots: tuple[Slot, ...], capabilities: frozen
 
 @contextmanager
 def quiet() -> Iterator[None]:
-    """Without MuJoCo's warnings: it would log them into a file in the folder that the user happens to be in."""
+    """Suppress MuJoCo's warnings: it would log them into a file in the folder that the user happens to be in."""
     before = mujoco.get_mju_user_warning()
     mujoco.set_mju_user_warning(lambda message: None)
     try:

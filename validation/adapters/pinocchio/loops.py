@@ -82,7 +82,7 @@ class LoopEngine(ChartedEngine):
     ties: tuple[Tie, ...] = ()
 
     def ties_as_numbers(self) -> list[str]:
-        """Its constraints for programs in C++: 3 or 6, then twice joint, R row by row and p of the place on it."""
+        """Constraints of a loop for programs in C++: 3 or 6, then twice joint, R row by row and p on it."""
         lines = []
         for m in self.names["cm"]:
             ends = (m.joint1_id, m.joint1_placement), (m.joint2_id, m.joint2_placement)

@@ -40,7 +40,7 @@ _scenes = st.fixed_dictionaries(
 
 
 def judge(scene: Scene) -> Verdict:
-    """Whatever is answered from a relative turn that is none keeps it at none."""
+    """Judge that a vanishing relative turn stays zero."""
     model = welded().model
     half = 0.5 * (np.pi - scene["short_by"])
     q = np.zeros(14)

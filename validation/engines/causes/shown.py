@@ -135,7 +135,7 @@ def _of_function(cells: Sequence[Cell], proof: Mapping[str, Any] | None) -> str:
 
 
 def withdrawn(cells: Iterable[Cell]) -> list[str]:
-    """Of cells that are no fault, though their answers differ from the truth: what the engine says, and where."""
+    """Cells that are no fault, though their answers differ from the truth, with the engine's words and their place."""
     lots: dict[tuple[str, str, str], list[Cell]] = {}
     for cell in cells:
         if cell.verdict in _WITHDRAWN:

@@ -57,7 +57,7 @@ def _acting() -> dict[str, Function]:
 
 
 def _controlled(t: Truth, s: Point) -> Exact:
-    """Of as many actuators as speeds.
+    """Functions of as many actuators as speeds.
 
     Raises:
         ZeroDivisionError: They don't make all forces, or in more than one way.

@@ -97,7 +97,7 @@ def _derivatives(name: str, of: Callable[[Truth, Exact, Exact, Exact], Exact]) -
 
 
 def _limited() -> dict[str, Function]:
-    """Of trees whose limits and dry friction act (`soft`)."""
+    """Functions of trees whose limits and dry friction act (`soft`)."""
     rows = {
         "limited_acceleration": ("accelerations (nv)", soft.acceleration),
         "limiting_forces": ("what limits and friction do along the speeds (nv)", soft.forces),

@@ -27,7 +27,7 @@ _TANKS = functions_of(
 
 
 def _elements() -> dict[str, Function]:
-    """Of a body at (R, a) that turns with v and moves with v2, Q the rotation of q2."""
+    """Functions of a body at (R, a) that turns with v and moves with v2, Q the rotation of q2."""
     rows = {
         "bushing_wrench": (
             "force, moment about its origin, of a bushing between the world and a point of the body (6)",
@@ -121,7 +121,7 @@ def _curves() -> dict[str, Function]:
 
 
 def _systems() -> dict[str, Function]:
-    """Of x' = A x + b and what is made of it (`systems`); spatial vectors."""
+    """Functions of x' = A x + b and what is made of it (`systems`); spatial vectors."""
     steps: dict[str, tuple[str, TruthOf]] = {
         f"linear_step_{one}": (f"x after a step of {one.replace('_', ' ')} (3)", systems.stepped(one))
         for one in systems.INTEGRATORS

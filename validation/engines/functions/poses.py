@@ -130,7 +130,7 @@ def _inertias() -> dict[str, Function]:
 
 
 def _solutions() -> dict[str, Function]:
-    """Of A = B B^T + 1, B of the rows v, a, v2, and tau."""
+    """Functions of A = B B^T + 1, B of the rows v, a, v2, and tau."""
     rows = {
         "solution": ("x of A x = tau (3)", solutions.unbounded),
         "solution_in_a_box": (

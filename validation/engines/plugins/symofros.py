@@ -188,7 +188,7 @@ _SUFFIXES = {"urdf": ".urdf", "mjcf": ".xml", "sdf": ".sdf", "usd": ".usda"}
 
 
 def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
-    """Text that has our importers read a file; what it states is interpreted, not compiled."""
+    """Script in which our importers read a file; what it states is interpreted, not compiled."""
     if any(joint.mimics for link in tree.links for joint in link.joints):
         return Unsupported("what mimics is a coupling, a constraint", offered=False)
     charts = {(kind, form): made[1] for kind, made in _KINDS.items() for form in ("", "unbounded")}

@@ -66,7 +66,7 @@ def manipulability(truth: Truth, s: Point) -> Exact:
 
 
 def manipulability_dq(truth: Truth, s: Point) -> Exact:
-    """Its derivatives (nv)."""
+    """Derivatives of `manipulability` by q (nv)."""
     values = truth.kinematics.tangent(lambda q: np.array([_manipulability(_end(truth, q)[2])]), s.q)
     return values[0]
 

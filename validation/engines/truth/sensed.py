@@ -18,7 +18,7 @@ def _poses_seen(poses: Sequence[tuple[Exact, ...]]) -> Exact:
 
 
 def _velocities_seen(frames: Sequence[tuple[Exact, ...]]) -> Exact:
-    """Of frames (R, p, twist): rates of positions in the first, angular velocities against it, along it (n, 6)."""
+    """Rates of positions in the first of frames (R, p, twist), and angular velocities against it, along it (n, 6)."""
     (R_first, p_first, first), *_ = frames
     rows = []
     for _, p, own in frames:

@@ -40,7 +40,7 @@ def far(angle: Array) -> float:
 
 
 def symofros_all(quick: bool) -> list[Contestant]:
-    """Both ways to solve, both ways to hold."""
+    """Our models with both ways to solve, and both ways to hold constraints."""
     steps = (1e-2, 5e-3) if quick else (2e-2, 1e-2, 5e-3, 2e-3, 1e-3)
     rtols = (1e-6,) if quick else (1e-4, 1e-6, 1e-8, 1e-10)
     contestants: list[Contestant] = []

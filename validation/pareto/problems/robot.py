@@ -125,7 +125,7 @@ def prepare(quick: bool) -> Prepared:
 
 
 def _splines(quick: bool) -> list[Contestant]:
-    """Ours by splines, with the terms of each order."""
+    """Our models with splines, with the terms of each order."""
     contestants: list[Contestant] = []
     rtols = (1e-3, 1e-5) if quick else RTOLS
     retained = {"": "first_order", ", all terms": "all"}
@@ -142,7 +142,7 @@ def _splines(quick: bool) -> list[Contestant]:
 
 
 def _richer() -> list[Contestant]:
-    """Ours by other functions, by rods, and rigid."""
+    """Our models with other functions, with rods, and rigid."""
     contestants: list[Contestant] = []
     changes: dict[str, dict[str, Any]] = {
         "2 splines, zeroth order": {"retain": "zeroth_order"},

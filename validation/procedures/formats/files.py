@@ -262,7 +262,7 @@ def _limits(stated: sf.System, names: Sequence[str]) -> Array:
 
 
 def _with_stops(system: sf.System) -> sf.System:
-    """With a stop at each limit, critically damped at 20 ms with what a push on the joint alone meets."""
+    """A model with a stop at each limit, critically damped at 20 ms with the inertia that the joint alone meets."""
     model = sf.compile(replace(system, constraints=()), sf.Options(("mass_matrix",), backend="interpreter"))
     inertias = 1.0 / np.diag(np.linalg.inv(model.mass_matrix(model.neutral())))
     rate = 2.0 * math.pi / 0.02

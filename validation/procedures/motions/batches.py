@@ -152,7 +152,7 @@ def amplified(model: sf.Model) -> Iterator[Cell]:
 
 
 def _missed(name: str, method: Any) -> Iterator[float]:
-    """By how much limits of stability miss those of the growth that the formulas of a step have."""
+    """Distance of limits of stability from those of the growth that the formulas of a step have."""
     for limit, direction in ((method.real_limit, -1.0 + 0.0j), (method.imaginary_limit, 1.0j)):
         if limit > 0.0:
             yield max(0.0, _growth(name, 0.999 * limit * direction) - 1.0 - 1e-9)

@@ -222,7 +222,7 @@ def balanced(scene: Scene) -> Iterator[Cell]:
 
 
 def drifting(scene: Scene) -> Iterator[Cell]:
-    """Nothing outside acts on a free mechanism: momentum stays, but for what steps of eighth order lose."""
+    """Free mechanism without outer forces: momentum stays, but for what steps of eighth order lose."""
     run = sf.simulate(scene.model, scene.q, scene.v, 0.5, method="dop853", rtol=1e-11, atol=1e-12)
     first, last = (_momentum(scene, run.q[i], run.v[i]) for i in (0, -1))
     yield Cell("momentum of a free motion", off(last, first), 1e-9)

@@ -73,7 +73,7 @@ def limit(bound: float) -> Limit:
 
 
 def said(runs: Map) -> tuple[int, int]:
-    """Of the runs that come to their end off by more than NOTED: those that bear a note, and all."""
+    """Number of runs to the end that are off by more than NOTED: those that bear a note, and all."""
     wrong = [c for row in runs.cells for c in row if c.ended == "finished" and c.value > NOTED]
     return sum(bool(c.note) for c in wrong), len(wrong)
 

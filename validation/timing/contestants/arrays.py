@@ -65,7 +65,7 @@ class Turns:
         self._copies, self._next = copies, 0
 
     def __call__(self, rounds: int) -> None:
-        """So many rounds of the next copy."""
+        """Run so many rounds of the next copy."""
         self._copies[self._next % len(self._copies)](rounds)
         self._next += 1
 

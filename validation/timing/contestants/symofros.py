@@ -44,7 +44,7 @@ MAX_BY_VECTORS = 10
 
 
 def our_loops(task: Task, functions: Sequence[str]) -> Iterator[Loop]:
-    """Each function state by state and, where it has code for that, by vectors: rows, columns, and columns of floats.
+    """Loops over our functions: state by state and, where there is code for it, by vectors, or of floats.
 
     Raises:
         SymofrosError: The model can't be compiled.

@@ -158,7 +158,7 @@ class Section:
         return {label: getattr(self, label) for label in SECTION if label not in (*STRAIN_STIFFNESSES, *PRODUCTS)}
 
     def _coupled_properties(self) -> dict[str, Any]:
-        """Of a geometrically exact rod all that differs from a rod's defaults; small distances are the mesh's."""
+        """Properties of an exact rod that differ from a rod's defaults; small distances are the mesh's."""
         off_axis = {label for label, value, size in self._off_axis() if not _is_small(value, size)}
         centers = {label for label in CENTERS if {f"{label}'s y", f"{label}'s z"} & off_axis}
         labels = [label for label in SECTION if label not in PRODUCTS or label in off_axis]

@@ -12,7 +12,7 @@ from symofros.simulation.results.examination.state_notes import deep_contact_not
 
 
 def contact_notes(resolved: Resolved, par: Array, states: States, signal: Signals) -> tuple[str, ...]:
-    """At most one note a mechanism.
+    """Notes on deep contacts, at most one a mechanism.
 
     Args:
         resolved: Diagram that ran.

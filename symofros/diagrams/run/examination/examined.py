@@ -174,7 +174,7 @@ class Examined(SwitchedMotion):
 
     @property
     def switched(self) -> str:
-        """Its crossings, in words."""
+        """The run's crossings, in words."""
         return {1: "all of the run", 2: "what a crossing does"}.get(self.parts, f"what {self.parts - 1} crossings do")
 
     @property

@@ -62,7 +62,7 @@ class _Revisited:
 
     @property
     def examined(self) -> Examined:
-        """The run as its steps are judged."""
+        """The run in the form that its steps are judged in."""
         run, locks = self._run, self._run.resolved.layout.lock_inputs
         u = np.zeros((len(run.t), len(run.resolved.layout.u0)))
         for i in range(len(run.t)) if locks else ():

@@ -12,7 +12,7 @@ from symofros.simulation.analysis.kinematics.postures import limit_notes
 
 
 def joint_limit_notes(resolved: Resolved, t: Array, q: Array, v: Array) -> list[str]:
-    """At most one note a part and kind of limit; efforts, which are signals here, are not looked at.
+    """Notes on joint limits, at most one a part and kind of limit; efforts, which are signals here, are not looked at.
 
     Args:
         resolved: Diagram that ran.

@@ -16,7 +16,7 @@ _SOME = 16
 
 
 def posture_notes(run: Examined, signal: Signals) -> list[str]:
-    """At most one note a mechanism.
+    """Notes on postures, at most one a mechanism.
 
     Where constraints engage or release, their rank changes at any posture: such diagrams are not looked at. Of
     mechanisms with prescribed motions, which are signals here, the records alone are.

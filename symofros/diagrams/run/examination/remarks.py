@@ -50,7 +50,7 @@ def _on_steps(run: Examined, modes: Resolution) -> tuple[str, ...]:
 
 
 def _creeping(run: Examined, signal: Signals) -> Iterator[str]:
-    """At most one note a mechanism."""
+    """Notes on creep, at most one a mechanism."""
     resolved, layout, (t, q, v) = run.energies.resolved, run.layout, (x[-1] for x in run.states[:3])
     for name, place in layout.q.items():
         mechanism, at = resolved.pieces[name].block.mechanism(), layout.v[name].slice

@@ -1,4 +1,4 @@
-"""By which sign each lane of a vector holds its node.
+"""Signs by which the lanes of a vector hold their nodes.
 
 Limbs are often mirror images: some of their components are those of the others, some the negatives.
 """

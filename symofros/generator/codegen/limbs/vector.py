@@ -152,6 +152,6 @@ class LimbVector:
         return f"{self._literal([repr(float(sign)) for sign in term.signs])} * {shown}" if mixed else shown
 
     def _literal(self, lanes: Sequence[str]) -> str:
-        """Such as "(sym_pair){0.1, 0.2}"; lanes beyond the last limb repeat the first, so that they are as harmless."""
+        """Text "(sym_pair){0.1, 0.2}"; lanes beyond the last limb repeat the first, so that they are as harmless."""
         padded = [*lanes, *[lanes[0]] * (self.width - len(lanes))]
         return f"({TYPES[self.width]}){{{', '.join(padded)}}}"

@@ -35,7 +35,7 @@ class BeamSections(SectionFrames):
 
     @cached_property
     def _arms(self) -> tuple[Vec3, ...]:
-        """From the axis to the mass centres of the sections, in B; none where these are on the axis."""
+        """Vectors from the axis to the mass centres of the sections, in B; none where these are on the axis."""
         if self.mass_center is None:
             return ()
         y, z = self.mass_center

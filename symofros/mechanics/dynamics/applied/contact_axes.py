@@ -105,7 +105,7 @@ class Triad(NamedTuple):
 
     @property
     def axis(self) -> Line:
-        """Its z axis."""
+        """The frame's z axis."""
         b = self.R.column(2)
         return Line(self.p, self.v, b, self.w.cross(b))
 
@@ -132,7 +132,7 @@ def reach_of(lowering: Lowering, contact: Contact, on_ball: Line, S: Triad) -> R
 
 
 class Reach(NamedTuple):
-    """From a point to that of its rim or segment which is next to the surface, in world axes.
+    """Vector from a point to that of its rim or segment which is next to the surface, in world axes.
 
     Attributes:
         reach: The vector [m].
@@ -314,7 +314,7 @@ def _clamped(g: Graph, x: Edge, x_rate: Edge, half: Edge) -> tuple[Edge, Edge]:
 
 
 def from_core(lowering: Lowering, contact: Contact, x: Vec3) -> tuple[Vec3, Vec3]:
-    """From the nearest point of a solid's core to x, in the axes of its frame, and how it changes with x: (38c).
+    """Vector from the nearest point of a solid's core to x, in the frame's axes, and its change with x: (38c).
 
     The core is the centre of a sphere, the axis of a cylinder, the segment between the ends of a capsule, a box itself.
 

@@ -68,7 +68,7 @@ def responses(
     v_rate: Sequence[Edge],
     gravity: Vec3,
 ) -> Responses:
-    """Of a rigid tree.
+    """Responses of a rigid tree.
 
     Args:
         kinematics: Kinematics of the tree.
@@ -156,7 +156,7 @@ class _TurningBody:
 def _turning_bodies(
     kinematics: TreeKinematics, joints: Sequence[FreeJoint], flows: Sequence[Flow]
 ) -> dict[int, _TurningBody]:
-    """Of each link, from the flows of links by themselves (eq. 33)."""
+    """Turning body of each link, from the flows of links by themselves (eq. 33)."""
     g = kinematics.g
     f = [_cross_matrix(-flow.P) for flow in flows]
     n = [flow.about_axes() for flow in flows]

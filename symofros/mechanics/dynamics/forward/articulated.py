@@ -145,7 +145,7 @@ def articulated_response(
 
 
 class _Driven(NamedTuple):
-    """What moves the bodies.
+    """Forces and prescribed motions that drive the bodies.
 
     Attributes:
         wrenches: Wrench on each link by itself at v' = 0.

@@ -138,7 +138,7 @@ def inverse_kinematics_batch(
 
 
 class Search(NamedTuple):
-    """What every thread searches by.
+    """Settings that every thread searches by.
 
     Attributes:
         model: Model, in double precision.

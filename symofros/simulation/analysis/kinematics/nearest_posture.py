@@ -157,7 +157,7 @@ class NearestPosture:
         self.limits = [limit for limit in coordinate_limits(task.model) if limit[1] in set(free.tolist())]
 
     def descend(self, q: Array, iterations: int) -> tuple[Array, int]:
-        """From a solution to one where the objective is least nearby.
+        """Descend from a solution to one where the objective is least nearby.
 
         Args:
             q: Solution of the task (nq), within its limits.

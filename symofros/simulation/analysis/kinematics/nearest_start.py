@@ -137,7 +137,7 @@ class _Distance:
         return self.at.model.integrate(q, step)
 
     def descend(self, q: Array) -> Array:
-        """From a closed posture to one whose distance is the least nearby (Gauss, Newton)."""
+        """Descend from a closed posture to one whose distance is the least nearby (Gauss, Newton)."""
         for _ in range(STEPS):
             nearer = self._nearer(q)
             if nearer is None:

@@ -50,7 +50,7 @@ class Posture:
 
 
 class _Again(NamedTuple):
-    """What drawn starts lead to.
+    """Results of drawn starts.
 
     Attributes:
         solutions: The nearest solution (nq) of the first round that has any; none otherwise.
@@ -137,7 +137,7 @@ class PostureSearch:
         return [end.q for end in ends if end.met and not self._wrong_way_round(end.q)]
 
     def _nearest(self, solutions: Sequence[Array]) -> list[Array]:
-        """Of some solutions the one nearest to rest, or to the guess without; none of none."""
+        """The solution nearest to rest, or to the guess without rest, as a list; empty without solutions."""
         return [min(solutions, key=self._distance)] if solutions else []
 
     def _distance(self, q: Array) -> float:
@@ -151,7 +151,7 @@ class PostureSearch:
         return any(float(facing.cosines) < 0.0 for facing in facings(model, q, u, inputs["par"]))
 
     def _nearest_to_rest(self, solutions: Sequence[Array]) -> Posture:
-        """Of what a descent from each solution leads to, the posture nearest to rest; the solution without rest."""
+        """The posture nearest to rest among those that descents from the solutions reach; a solution without rest."""
         if self.rest is None:
             return Posture(solutions[0], True, 0)
         found = [self._descended(q, self.rest) for q in solutions]

@@ -243,7 +243,7 @@ def _between(model: Model, most: int, t: Array, q: Array, u: Array) -> list[Arra
     shares, count = (np.arange(parts) / parts)[:, np.newaxis], (len(t) - 1) * parts
 
     def inner(x: Array) -> Array:
-        """Those of numbers (n, m)."""
+        """Values between consecutive rows (n, m)."""
         return np.asarray(x[:-1, np.newaxis] + shares * np.diff(x, axis=0)[:, np.newaxis]).reshape(count, x.shape[1])
 
     turned = (shares * changes[:, np.newaxis]).reshape(-1, model.nv)

@@ -176,7 +176,7 @@ def task_inputs(model: Model, u: ArrayLike | None, par: ArrayLike | None) -> tup
 
 
 def wishes_of(targets: Mapping[str, Target]) -> tuple[Wish, ...]:
-    """What is wanted of each frame.
+    """Targets of each frame.
 
     Raises:
         SymofrosError: Nothing is.

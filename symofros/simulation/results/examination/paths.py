@@ -60,7 +60,7 @@ class Cubics:
 
     @classmethod
     def of(cls, stepper: Stepper, states: Sequence[Array], chosen: Numbers) -> Cubics | None:
-        """Of some intervals between recorded t (n), q, v; None where a function of the user's fails. In `preserved`."""
+        """Cubics of intervals between recorded t (n), q, v; None where a user's function fails. In `preserved`."""
         places, both = states[:3], list[tuple[Array, Array, Array, Array]]()
         for numbers in (chosen, chosen + 1):
             t, q, v = (y[numbers] for y in places)

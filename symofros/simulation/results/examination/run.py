@@ -48,7 +48,7 @@ class Ranks(NamedTuple):
 
     @classmethod
     def of(cls, stepper: Stepper) -> Ranks:
-        """Those that a stepper has met."""
+        """Ranks that a stepper has met."""
         run = stepper.run
         return cls(int(run.rank_min), int(run.rank_max), float(run.t_rank_min))
 
@@ -269,7 +269,7 @@ class ExaminedRun(HeldRun):
         return self.steps <= WHOLE
 
     def coarse(self, window: Window, every: int) -> States | None:
-        """Its records, or recomputed steps where these are fewer."""
+        """Records of a window, or recomputed steps where these are fewer."""
         if self.short:
             return self.states
         if len(self.states[0]) == self.steps + 1:  # A record at each step.

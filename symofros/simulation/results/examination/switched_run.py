@@ -63,7 +63,7 @@ class SwitchedRun(SwitchedMotion, ExaminedRun):
 
     @property
     def switched(self) -> str:
-        """Its contacts or actions of events, in words."""
+        """The run's contacts or actions of events, in words."""
         if self.stepper.actions is None:
             return "its contacts"
         words = {1: "what its events do", 2: "an action of an event"}
@@ -81,7 +81,7 @@ class SwitchedRun(SwitchedMotion, ExaminedRun):
         return np.append(alone[:: max(1, len(alone) // _COMPARED)], len(later))
 
     def coarse(self, window: Window, every: int) -> States:
-        """Those records."""
+        """Records at the compared instants."""
         return [x[self._rows] for x in self.states]
 
     def fine(self, window: Window, refinements: int, every: int) -> States | None:

@@ -101,7 +101,7 @@ class _Diagram:
             self.wire(f"{section}/{name}", kind, ends[0], ends[1], [section, name], label)
 
     def condition(self, name: str, entry: Block) -> None:
-        """A condition on speeds is a block; one at a frame is wired to it."""
+        """Name of the block of a condition on speeds; a condition at a frame is wired to the frame."""
         kind = next((key for key in ("knife_edge", "rolling", "coefficients") if key in entry), "coefficients")
         key = f"nonholonomic/{name}"
         self.block(key, "nonholonomic", name, kind, ["nonholonomic", name], [ORIGIN])

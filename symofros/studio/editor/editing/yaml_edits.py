@@ -71,7 +71,7 @@ def _one_by_one(text: str, edits: list[Edit]) -> str:
 
 
 def trace(text: str, edit: Edit) -> tuple[str, Path | None]:
-    """As `apply`, with the path of the entry that had to be rewritten, if any."""
+    """Apply edits as `apply` does; also the path of the entry that had to be rewritten, if any."""
     source = yaml_text_of(text)
     before = source.data
     after = edited(before, edit)

@@ -35,7 +35,7 @@ POINTS, MAX_POINTS = 1000, 5000
 
 
 def compile_model(request: Json, tell: Tell) -> Json:
-    """Derive, generate, compile; how much of each. A simulation of the same model finds all that it calls compiled."""
+    """Derive, generate and compile a model, and count each; a simulation of it then finds all functions compiled."""
     tell(0, 4, "reading")
     system = system_of(request)
     start = time.perf_counter()

@@ -1,4 +1,4 @@
-"""Who may talk to the server: the page that it served itself, from this machine, with the token it was given."""
+"""Access to the server: by the page that it served itself, from this machine, with the token it was given."""
 
 from __future__ import annotations
 

@@ -42,7 +42,7 @@ class _Fans(NamedTuple):
     number: Faces
 
     def around(self, corners: Faces) -> tuple[Faces, Faces]:
-        """For each spoke of the given corners (M): which of these it is of, and its index."""
+        """Fan and index of each spoke of the given corners (M)."""
         repeats = self.number[corners]
         ends = np.cumsum(repeats)
         of = np.repeat(np.arange(len(corners)), repeats)

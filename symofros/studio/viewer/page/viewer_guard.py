@@ -1,4 +1,4 @@
-"""Who may look at a viewer, and move it: whoever has its address, with the token in it; no page from elsewhere.
+"""Access to a viewer, and to its motion: by its address, with the token in it; from no page of another server.
 
 viser answers anyone. A web page elsewhere can make a browser send requests to this machine: a rebound domain name shows
 in Host, a foreign page in Origin, and neither knows the token.

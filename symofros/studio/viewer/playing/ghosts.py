@@ -49,7 +49,7 @@ class Ghost:
         return shown
 
     def posture(self, mechanism: Mechanism, t: Array, exaggeration: float) -> Posture:
-        """Its postures at times (n) [s]."""
+        """Postures of the ghost at times (n) [s]."""
         q, u, par = self.motion.at(t)
         return mechanism.posture(q, u, par[0], exaggeration)
 

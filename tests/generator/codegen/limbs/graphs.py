@@ -37,7 +37,7 @@ def of_limbs(count: int, limb: Callable[[Graph, Callable[[int], Edge], int], Edg
 
 
 def cubed(graph: Graph, edge: Edge) -> Edge:
-    """More operations on an edge, so that vectors pay."""
+    """An edge with more operations, so that vectors pay."""
     return graph.mul(graph.add(graph.mul(edge, edge), edge), edge)
 
 

@@ -24,7 +24,7 @@ Matrix = list[list[Edge]]
 
 
 def both(e: Equations) -> tuple[tuple[Matrix, Matrix], tuple[Matrix, Matrix]]:
-    """By recursion, by differentiation of the graph; by q, by v."""
+    """Derivatives by q and by v, by recursion and by differentiation of the graph."""
     recursive = e.inverse_dynamics_by_q, e.inverse_dynamics_by_v
     tau = e.inverse_dynamics
     return recursive, (by_configuration(e.kinematics, tau), by_inputs(e.kinematics, tau, "v", e.nv))

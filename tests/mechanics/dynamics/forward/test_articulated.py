@@ -50,7 +50,7 @@ def interpreted(system: sf.System, way: Way) -> sf.Model:
 
 
 def difference(system: sf.System, seed: int = 0) -> float:
-    """Of the two at some states, relative to the largest acceleration; prescribed motions as they are by default."""
+    """Difference of the two methods relative to the largest acceleration; prescribed motions by default."""
     rng = np.random.default_rng(seed)
     models = [interpreted(system, way) for way in WAYS]
     q, v = (np.array(x) for x in zip(*(models[0].random_state(rng) for _ in range(4)), strict=True))
@@ -173,7 +173,7 @@ def test_operations_grow_in_proportion_to_the_links() -> None:
 
 @cache
 def error(links: int, way: Way, load: float) -> float:
-    """Of accelerations in doubles, against forty digits: the geometric mean over states.
+    """Error of accelerations in doubles against forty digits: the geometric mean over states.
 
     The last link is so many times as heavy as it was.
     """

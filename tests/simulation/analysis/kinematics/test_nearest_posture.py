@@ -1,4 +1,4 @@
-"""With freedom left, inverse kinematics ends at the solution nearest to rest: to first order, limits included."""
+"""Inverse kinematics of redundant arms ends at the solution nearest to rest: to first order, limits included."""
 
 from __future__ import annotations
 

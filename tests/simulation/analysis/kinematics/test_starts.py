@@ -22,7 +22,7 @@ def model(name: str) -> sf.Model:
 
 
 def start(m: sf.Model, guess: list[float] | None = None, **stated: float) -> ClosedStart:
-    """From a guess (the neutral configuration), with some values by name, speeds with a d before."""
+    """The start from a guess (the neutral configuration), with some values by name, speeds with a d before."""
     q, v = np.array(m.neutral() if guess is None else guess, dtype=float), np.zeros(m.nv)
     coordinates, speeds = stated_names(m.names.q, m.names.v, stated)
     for name in coordinates:

@@ -79,7 +79,7 @@ made = cache(lambda name: MOTIONS[name]())
 
 
 def in_batch(moved: Motion, **options: Any) -> sf.Outcome:
-    """As the second of two motions, of which the first begins at rest."""
+    """A run as the second of two motions, the first of which begins at rest."""
     speeds = np.stack([0.0 * np.array(moved.v), moved.v])
     return sf.simulate_batch(moved.model, moved.q, speeds, t_end=moved.t_end, method="rk4", dt=STEP, **options).outcome(
         1

@@ -162,7 +162,7 @@ def _is_ours(kind: str, text: str) -> bool:
 
 
 def _node_version() -> tuple[int, ...]:
-    """Of Node, if it and its package manager are there."""
+    """Version of Node, if it and its package manager are there."""
     if shutil.which("node") is None or shutil.which("npm") is None:
         return ()
     text = subprocess.run(["node", "--version"], capture_output=True, text=True, check=True).stdout

@@ -133,7 +133,7 @@ def test_typed_text_goes_to_its_own_file(arm: Server, page: Page, key: str) -> N
 
 
 def in_a_window(page: Page, overtake: Callable[[], None]) -> str:
-    """Of a body that the other document has, too."""
+    """Properties, in a window, of a body that the other document has, too."""
     steps.open_window(page, "bodies/upper")
     steps.fill(page, "Axis z", "0.5")
     overtake()

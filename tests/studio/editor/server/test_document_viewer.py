@@ -70,7 +70,7 @@ def test_loops_close_around_the_moved_coordinate(client: TestClient) -> None:
 
 @pytest.fixture
 def crank(client: TestClient, folder: Path) -> TestClient:
-    """With a slider-crank open."""
+    """A document with a slider-crank open."""
     shutil.copy(FILES["slider_crank"], folder)
     assert client.post("/api/open", json={"path": "slider_crank.yaml"}).status_code == 200
     return client
@@ -135,7 +135,7 @@ def test_odd_poses_are_refused(client: TestClient) -> None:
 
 @pytest.fixture
 def bare(session: Session) -> Iterator[TestClient]:
-    """Without a token of its own."""
+    """A client without a token of its own."""
     with TestClient(application(session, TOKEN, PORT), base_url=BASE) as found:
         yield found
 

@@ -1,4 +1,4 @@
-"""Those who listen are told everything, and nobody holds up the others."""
+"""Events reach all listeners, and no listener delays another."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""Who is refused: a wrong host, a foreign page, a wrong token, too much; and the server goes on."""
+"""The guard refuses wrong hosts, foreign pages, wrong tokens and large requests; the server goes on."""
 
 from __future__ import annotations
 

@@ -33,7 +33,7 @@ def document(
 
 
 def corners(data: bytes) -> np.ndarray:
-    """Of all triangles (F, 3, 3)."""
+    """Corners of all triangles (F, 3, 3)."""
     mesh = read_collada(data, 100)
     return mesh.vertices[mesh.faces]
 

@@ -17,7 +17,7 @@ def of(solid: object) -> Mesh:
 
 
 def distances(points: np.ndarray, mesh: Mesh) -> np.ndarray:
-    """From each point (n, 3) to the nearest triangle, by its corners, edges and face."""
+    """Distance of each point (n, 3) from the nearest triangle, by its corners, edges and face."""
     a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
     normal = np.cross(b - a, c - a)
     normal /= np.linalg.norm(normal, axis=1, keepdims=True)

@@ -28,7 +28,7 @@ TWELVE_SIDES, WHEEL = (n / (2 * np.pi) * np.sin(2 * np.pi / n) for n in (12, 48)
 
 
 def volume(mesh: Mesh) -> float:
-    """By the divergence theorem: positive only where faces look outwards."""
+    """Volume by the divergence theorem: positive only where faces look outwards."""
     a, b, c = (mesh.vertices[mesh.faces[:, k]] for k in range(3))
     return float(np.einsum("ij,ij->", a, np.cross(b, c)) / 6)
 

@@ -25,7 +25,7 @@ def vertices(points: Any, size: float = 1.0) -> np.ndarray:
 
 
 def distance(places: np.ndarray, points: np.ndarray) -> np.ndarray:
-    """Of places (n, 3) from a curve through points (m, 3)."""
+    """Distances of places (n, 3) from a curve through points (m, 3)."""
     start, along = points[:-1], np.diff(points, axis=0)
     share = np.einsum("nmi,mi->nm", places[:, None] - start, along) / np.maximum((along**2).sum(axis=1), 1e-300)
     near = start + np.clip(share, 0.0, 1.0)[..., None] * along

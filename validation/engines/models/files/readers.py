@@ -45,7 +45,7 @@ class Reading:
     asked: tuple[str, ...] = READ
 
     def functions(self, offered: Collection[str]) -> tuple[str, ...]:
-        """Those that are asked of an engine; in place of the bias that it does not offer, gravity's part of it."""
+        """Functions that are asked of an engine; in place of the bias that it does not offer, gravity's part of it."""
         asked = (*self.asked, "gravity") if "bias" in self.asked and "bias" not in offered else self.asked
         return tuple(name for name in offered if name in asked)
 

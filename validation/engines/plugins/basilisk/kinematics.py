@@ -42,7 +42,7 @@ _FACTORS = {"MRP": 4, "gibbs": 2}
 
 
 def _of_parameters(own: str, of: str) -> dict[str, Way]:
-    """From a set of parameters: R through each other set, the matrices of its rates."""
+    """Functions of a set of parameters: R through each other set, the matrices of its rates."""
     name, x = own.lower(), f"(tau / 4 + {list(ANGLES)})" if own.startswith("euler") else "tau"
     ways = {f"attitude_of_{name}": Way(f"{own}2C", f"value = rbk.{own}2C({x}).T.ravel()")}
     for there, back in [*((other, mine) for mine, other in _SETS.items()), ("EP", "EP")]:

@@ -47,7 +47,7 @@ def _spatial(of: str) -> str:
 
 
 def _unit(of: str) -> str:
-    """Of a unit inertia about the mass centre."""
+    """Moments of a unit inertia about the mass centre."""
     return f"{_BEGIN}value = told(drake.SpatialInertia({MASS}, np.zeros(3), drake.UnitInertia.{of}))"
 
 

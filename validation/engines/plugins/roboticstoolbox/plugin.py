@@ -103,7 +103,7 @@ def _turned(axis: Vector) -> Array:
 
 
 def _symmetric(matrix: Array) -> Array:
-    """Without what roundings leave of a difference: links with one are refused."""
+    """A matrix made symmetric, off by roundings alone: links with an asymmetric inertia are refused."""
     return np.asarray((matrix + matrix.T) / 2.0)
 
 

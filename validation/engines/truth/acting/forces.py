@@ -72,7 +72,7 @@ class Forces:
         return [self._kinematics.line(q, tendon) for tendon in self.tree.tendons]
 
     def transmissions(self, q: Exact) -> list[tuple[Exact, Exact]]:
-        """For each actuator, its length and moment arms (nv), both with its gear."""
+        """Length and moment arms (nv) of each actuator, both with its gear."""
         made = []
         for actuator in self.tree.actuators:
             length, J = self._line(q, actuator)

@@ -63,7 +63,7 @@ def _meshes() -> dict[str, Device]:
 
 
 def _constants() -> dict[str, Device]:
-    """Of a slide of 2.5 kg with its rotor, a tendon of twice its coordinate and a motor of gear 3."""
+    """Constants of a slide of 2.5 kg with its rotor, a tendon of twice its coordinate and a motor of gear 3."""
     tendon = '<tendon><fixed name="t"><joint joint="j" coef="2"/></fixed></tendon>'
     heavy = slide('armature="0.5" ref="0.25"')
     text = model(heavy, f'{tendon}<actuator><motor joint="j" gear="3"/></actuator>')

@@ -86,7 +86,7 @@ _GAZE = "mocap_pos=v[None], mocap_quat=q[None]"
 
 
 def _rays() -> dict[str, Device]:
-    """From v along z of q, to a sphere about the origin from within, or from where it leads outside."""
+    """Lengths of rays from v along z of q, to a sphere about the origin from within, or from where it leads outside."""
     looker = '<body mocap="true"><site name="o"/></body>'
     world = f'<geom type="sphere" size="4"/>{looker}'
 
@@ -138,7 +138,7 @@ def _images() -> dict[str, Device]:
 
 
 def _places() -> dict[str, Device]:
-    """Of an object at v: within a site; its distance from a ball at (4, -8, 8), normal and nearest points."""
+    """Readings of an object at v: within a site; distance from a ball at (4, -8, 8), normal and nearest points."""
     shapes = {
         "sphere": ('size="0.75"', lambda x: x @ x < number(0.75) ** 2),
         "box": ('type="box" size="0.5 0.75 0.25"', lambda x: all(abs(x) < exact((0.5, 0.75, 0.25)))),

@@ -105,7 +105,7 @@ def pendulum_holding(t: Truth, s: Point) -> Exact:
 
 
 def pendulum_stiffness(t: Truth, s: Point) -> Exact:
-    """That torque, and GAINS of the angle and the rate that lack to v (1)."""
+    """Torque that GAINS of the angle and the rate lack to v (1)."""
     lacking = s.v[:2] - s.tau[:2]
     return pendulum_holding(t, s) + Decimal(GAINS[0]) * lacking[0] + Decimal(GAINS[2]) * lacking[1]
 

@@ -275,7 +275,7 @@ def turn_integrated(t: Truth, s: Point) -> Exact:
 
 
 def turn_integrated_dq(t: Truth, s: Point) -> Exact:
-    """Its angular velocity along the turned axes for that of R (3, 3)."""
+    """Derivative of `turn_integrated`: angular velocity along the turned axes for that of R (3, 3)."""
     return turned_by(s.v).T
 
 

@@ -173,12 +173,12 @@ def _rate(of: Curve, x: Exact, t: Decimal) -> Exact:
 
 
 def speed(name: str) -> TruthOf:
-    """Its first derivative at t (3)."""
+    """First derivative of a curve at t (3)."""
     return lambda t, s: _rate(CURVES[name], samples(s), time(s))
 
 
 def bend(name: str) -> TruthOf:
-    """Its second derivative at t (3)."""
+    """Second derivative of a curve at t (3)."""
     return lambda t, s: _rate(lambda x, z: _rate(CURVES[name], x, z), samples(s), time(s))
 
 
@@ -207,7 +207,7 @@ def orientation(t: Truth, s: Point) -> Exact:
 
 
 def turning(t: Truth, s: Point) -> Exact:
-    """Its angular velocity (3)."""
+    """Angular velocity of the orientation at t (3)."""
     return _turning(t, s)[1]
 
 
@@ -223,7 +223,7 @@ def pose(t: Truth, s: Point) -> Exact:
 
 
 def twist(t: Truth, s: Point) -> Exact:
-    """Its velocity and angular velocity (6)."""
+    """Velocity and angular velocity of the pose at t (6)."""
     return np.concatenate([_place(s)[1], turning(t, s)])
 
 

@@ -299,7 +299,7 @@ def inertia_sum(t: Truth, s: Point) -> Exact:
 
 
 def momentum(t: Truth, s: Point) -> Exact:
-    """Its momentum for the twist (v; v2) (6)."""
+    """Momentum of the body for the twist (v; v2) (6)."""
     return inertia().matrix() @ twist(s)
 
 

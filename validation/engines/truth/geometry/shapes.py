@@ -254,33 +254,33 @@ def _of_squares(x: Exact) -> Exact:
 
 
 def box_moments(sides: Exact) -> Exact:
-    """Of a box by its sides, of unit mass."""
+    """Moments of a box by its sides, of unit mass."""
     return _of_squares(sides**2 / 12)
 
 
 def ellipsoid_moments(axes: Exact) -> Exact:
-    """Of an ellipsoid by its semi-axes, of unit mass."""
+    """Moments of an ellipsoid by its semi-axes, of unit mass."""
     return _of_squares(axes**2 / 5)
 
 
 def ball_moments(sizes: Exact) -> Exact:
-    """Of a ball of radius sizes[0], of unit mass."""
+    """Moments of a ball of radius sizes[0], of unit mass."""
     return ellipsoid_moments(np.array([sizes[0]] * 3))
 
 
 def shell_moments(sizes: Exact) -> Exact:
-    """Of the surface of a ball of radius sizes[0], of unit mass."""
+    """Moments of the surface of a ball of radius sizes[0], of unit mass."""
     return _of_squares(np.array([sizes[0] ** 2 / 3] * 3))
 
 
 def cylinder_moments(sizes: Exact) -> Exact:
-    """Of a cylinder along z of radius sizes[0] and length sizes[1], of unit mass."""
+    """Moments of a cylinder along z of radius sizes[0] and length sizes[1], of unit mass."""
     across = sizes[0] ** 2 / 4
     return _of_squares(np.array([across, across, sizes[1] ** 2 / 12]))
 
 
 def capsule_moments(sizes: Exact) -> Exact:
-    """Of a capsule along z, whose cylinder has radius sizes[0] and length sizes[1], of unit mass.
+    """Moments of a capsule along z, of unit mass; its cylinder has radius sizes[0] and length sizes[1].
 
     Its halves of a ball have the mean square r^2 / 5 about their flat faces, and mass centres 3 r / 8 from these.
     """

@@ -96,7 +96,7 @@ def pointing(t: Truth, s: Point) -> Exact:
 
 
 def _errors(t: Truth, s: Point) -> tuple[Exact, ...]:
-    """As text states them: parameters v2, angular velocity v against a reference of a, tau along B's axes."""
+    """Guidance errors as text states them: parameters v2, angular velocity v against a reference of a, tau."""
     return s.v2, s.v, s.a, s.tau
 
 

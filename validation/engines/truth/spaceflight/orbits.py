@@ -91,14 +91,14 @@ def _hyperbolic_of_mean(N: Exact, e: Exact) -> Exact:
 
 
 def anomalies(t: Truth, s: Point) -> Exact:
-    """Of the angle x = tau0: f at E = x, M at E = x, E at f = x, E at M = x (4)."""
+    """Anomalies of the angle x = tau0: f at E = x, M at E = x, E at f = x, E at M = x (4)."""
     x, e = s.tau[0], _eccentricity(s)
     mean = x - e * cos_sin(x)[1]
     return np.array([_true_of_eccentric(x, e), mean, _halves(x, root((1 - e) / (1 + e))), _eccentric_of_mean(x, e)])
 
 
 def anomalies_of_a_hyperbola(t: Truth, s: Point) -> Exact:
-    """At H = x = tau0: f, N; H at f = x / 2, H at N = x (4)."""
+    """Anomalies of a hyperbola at H = x = tau0: f, N; H at f = x / 2, H at N = x (4)."""
     x, e = s.tau[0], 1 / _eccentricity(s)
     (cosh, sinh), ratio = _hyperbolic(x), root((e + 1) / (e - 1))
     true = 2 * arc(1 + cosh, ratio * sinh)  # tanh(H / 2) = sinh H / (1 + cosh H).
