@@ -38,6 +38,7 @@ from symofros.description.pose import IDENTITY_POSE as IDENTITY_POSE
 from symofros.description.pose import Pose as Pose
 from symofros.description.reading import MODEL_SUFFIXES as MODEL_SUFFIXES
 from symofros.description.reading import YAML_SUFFIXES as YAML_SUFFIXES
+from symofros.description.reading import fresh_name as fresh_name
 from symofros.description.reading import in_order as in_order
 from symofros.description.reading import kind_of as kind_of
 from symofros.description.reading import read_bytes as read_bytes

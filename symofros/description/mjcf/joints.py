@@ -32,6 +32,7 @@ from symofros.description.values import Value
 # mjtJoint and mjtDisableBit of mujoco/mjmodel.h, which never change: compiled models are stored by them.
 FREE, BALL, SLIDE, HINGE = range(4)
 _NO_SPRINGS, _NO_DAMPERS = 1 << 5, 1 << 6
+_NO_FRICTION, _NO_LIMITS = 1 << 0 | 1 << 2, 1 << 0 | 1 << 3  # The first bit switches all constraints off.
 _SPEEDS = {FREE: 6, BALL: 3, SLIDE: 1, HINGE: 1}
 
 
@@ -136,7 +137,8 @@ class JointReader:
         return float(self.model.dof_armature[self.model.jnt_dofadr[j]])
 
     def _limits(self, j: int) -> Limits | None:
-        if not self.model.jnt_limited[j] or self.model.jnt_type[j] == BALL:
+        off = self.model.opt.disableflags & _NO_LIMITS
+        if off or not self.model.jnt_limited[j] or self.model.jnt_type[j] == BALL:
             return None
         lower, upper = (float(bound) if np.isfinite(bound) else None for bound in self.model.jnt_range[j])
         return Limits(lower, upper)
@@ -153,7 +155,7 @@ class JointReader:
             d = d2 = d3 = 0.0
         if d3 or (d2 and not simple):
             self.remarks.add("damping of higher order ignored", "joint", name)
-        friction = float(m.dof_frictionloss[dof])
+        friction = 0.0 if m.opt.disableflags & _NO_FRICTION else float(m.dof_frictionloss[dof])
         one = Resistance(self._spring(j, simple), d, d2 if simple else 0.0, friction)
         return (one,) * _SPEEDS[int(m.jnt_type[j])]
 

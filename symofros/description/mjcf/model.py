@@ -26,7 +26,7 @@ from symofros.description.remarks import Remarks
 from symofros.description.system import Inertia
 from symofros.errors import DescriptionError
 
-_NO_CONTACTS, _NO_GRAVITY = 1 << 4, 1 << 7  # mjDSBL_CONTACT, mjDSBL_GRAVITY
+_NO_CONTACTS, _NO_GRAVITY = 1 << 0 | 1 << 4, 1 << 7  # mjDSBL_CONSTRAINT and _CONTACT, mjDSBL_GRAVITY
 
 
 @dataclass(frozen=True)

@@ -84,6 +84,11 @@ class Frames:
         own = f"{scope}{SEPARATOR}{name}" if scope else name
         return f"{own}{SEPARATOR}{MODEL}" if f"{own}{SEPARATOR}{MODEL}" in self.nodes else own
 
+    def of_model(self, scope: str) -> str:
+        """Full name of the frame of the model with a prefix of names, which is "" for a single one; else the world."""
+        own = self.full(scope, MODEL)
+        return own if own in self.nodes else WORLD
+
     def check(self) -> None:
         """Note the frames that refer to none or to each other in a circle, and take them for the world's."""
         for name, node in list(self.nodes.items()):

@@ -151,7 +151,7 @@ class _Importer:
                 "the pose of a model is that of its own frame",
                 "state the pose of the model's frame, and drop placement_frame",
             )
-        self.frames.add(own, model, around, self.frames.full(around, MODEL) if around else WORLD)
+        self.frames.add(own, model, around, self.frames.of_model(around))
         for inner in model.all("model"):
             name = self.values.attribute(inner, "name", "a model") or "?"
             self.model(inner, f"{scope}{SEPARATOR}{name}" if scope else name, scope)
@@ -168,8 +168,7 @@ class _Importer:
 
     def scope(self, element: Element, scope: str, remarked: bool) -> None:
         """Take up links, joints and frames of a model, or of the world."""
-        default = self.frames.full(scope, MODEL)
-        default = default if default in self.frames.nodes else WORLD
+        default = self.frames.of_model(scope)
         for child in element.children:
             if child.tag not in _READ and child.tag not in _SILENT and remarked:
                 name = child.attributes.get("name", f"line {child.line}")

@@ -12,7 +12,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.base.names import identifier
 from symofros.base.rotations import matrix_product, matrix_quaternion
-from symofros.description import Anchor, Closure, Damper, Joint, Limits, Spring, System
+from symofros.description import Anchor, Closure, Damper, Joint, Limits, Spring, System, fresh_name
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.interchange.couplings import DEGREE, PolynomialCoupling, polynomial_couplings
 from symofros.exports.interchange.joint_series import GatheredBody, JointPlace, gathered
@@ -306,9 +306,10 @@ def _site(anchor: Anchor, links: list[RigidLink], root: Tree.Element) -> tuple[s
     if frame is not None:
         names = [name for name, _, _ in link.frames]
         return link.name, frame if frame in names else f"{link.name}.{frame}"
-    name = f"{link.name}.origin"
     owner = next((e for e in root.iter("body") if e.get("name") == link.name), root.find("worldbody"))
     assert owner is not None
-    if not any(site.get("name") == name for site in owner.findall("site")):
+    name = next((site.attrib["name"] for site in owner.findall("site") if "pos" not in site.attrib), "")
+    if not name:
+        name = fresh_name(f"{link.name}.origin", {site.attrib["name"] for site in root.iter("site")})
         Tree.SubElement(owner, "site", {"name": name})
     return link.name, name

@@ -3,8 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import dataclass
 from typing import Literal
 
@@ -16,7 +15,7 @@ from symofros.base.rotations import matrix_product, skew
 from symofros.description import PRE_STRAINS, STATION, WORLD, Beam, Body, Damper, Inertia, Joint, RigidBody, System
 from symofros.errors import ExportError, Problem
 from symofros.exports.limits import listed
-from symofros.mechanics.topology import Numbers, coordinate_names
+from symofros.mechanics.topology import Numbers, coordinate_names, full_names, public_names
 
 # Enough for the sixth power of x in each of so many pieces: sections are polynomials of low degree, or smooth.
 _PIECES, _NODES = 16, 8
@@ -100,13 +99,15 @@ def rigid_links(system: System, form: Literal["URDF", "MJCF"] | None) -> tuple[l
                 "export the model as an FMU, or replace these rods by rigid bodies",
             )
         )
-    names = Counter([body.name for body in system.bodies] + [f.name for body in system.bodies for f in body.frames])
+    bodies = system.bodies
+    if all(body.joint is not None for body in bodies):
+        bodies = (RigidBody(WORLD), *bodies)
+    stated = [one for body in bodies for one in full_names(body)]
+    names = {full: public for (_, full), public in zip(stated, public_names(stated), strict=True)}
     base = {body.name for body in system.bodies if body.joint is None} | {WORLD}
+    root = next(body.name for body in bodies if body.joint is None)
     rigid = []
-    if not any(body.joint is None for body in system.bodies):
-        rigid.append(_link(RigidBody(WORLD), None, system, numbers, names))
-    root = rigid[0].name if rigid else next(body.name for body in system.bodies if body.joint is None)
-    for body in system.bodies:
+    for body in bodies:
         parent = None if body.joint is None else root if body.joint.parent in base else body.joint.parent
         rigid.append(_link(body, parent, system, numbers, names))
     return _parents_first(rigid), list(_lost(system))
@@ -137,7 +138,7 @@ def _representable(joint: Joint, form: Literal["URDF", "MJCF"] | None) -> bool:
     return not joint.prescribed and (joint.traits.series or own is not None)
 
 
-def _link(body: Body, parent: str | None, system: System, numbers: Numbers, names: Counter[str]) -> RigidLink:
+def _link(body: Body, parent: str | None, system: System, numbers: Numbers, names: Mapping[str, str]) -> RigidLink:
     mass, center, inertia = _beam_inertia(body, numbers) if isinstance(body, Beam) else _inertia(body.inertia, numbers)
     position, rotation = np.zeros(3), np.eye(3)
     if body.joint is not None:
@@ -147,8 +148,7 @@ def _link(body: Body, parent: str | None, system: System, numbers: Numbers, name
         at, turned = numbers.values(frame.position), numbers.rotation(frame.rotation)
         if isinstance(body, Beam):
             at, turned = np.array([frame.station * numbers.value(body.length), 0.0, 0.0]), np.eye(3)
-        # As in models: a frame bears its own name where nothing else does.
-        frames.append((frame.name if names[frame.name] == 1 else f"{body.name}.{frame.name}", at, turned))
+        frames.append((names[f"{body.name}.{frame.name}"], at, turned))
     axes = () if body.joint is None else _axes(body.joint, numbers)
     damping = () if body.joint is None else _damping(body.joint, numbers)
     return RigidLink(

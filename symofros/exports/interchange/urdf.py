@@ -11,7 +11,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.base.names import identifier
-from symofros.description import Damper, Joint, JointElement, Limits, System
+from symofros.description import Damper, Joint, JointElement, Limits, System, fresh_name
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.interchange.couplings import PolynomialCoupling, polynomial_couplings
 from symofros.exports.interchange.rigid import Axis, RigidLink, numbers_text, rigid_links
@@ -30,17 +30,32 @@ def write_urdf(system: System, name: str | None, folder: Path, generator: str) -
     """
     links, lost = rigid_links(system, "URDF")
     root = Tree.Element("robot", {"name": system.name})
+    names = _Names(links)
     for link in links:
-        _link(root, link)
+        _link(root, link, names)
     mimics = _mimics(system, links)
     for link in links:
         if link.parent is not None:
-            _joints(root, link, mimics)
+            _joints(root, link, mimics, names)
     Tree.indent(root)
     text = f'<?xml version="1.0"?>\n{Tree.tostring(root, encoding="unicode")}\n'
     called = identifier(name or system.name)
     notes = (*lost, *_lost(system, {mimic.name for mimic in mimics.values()}))
     return write_folder(folder, "urdf", called, {f"{called}.urdf": text}, generator, notes)
+
+
+class _Names:
+    """Names of links and joints of the file; those that it adds are other ones.
+
+    Attributes:
+        links: Those of bodies and frames, and of links added.
+        joints: Those of the joints, and of joints added.
+    """
+
+    def __init__(self, links: list[RigidLink]) -> None:
+        self.links = {link.name for link in links} | {frame[0] for link in links for frame in link.frames}
+        self.joints = {axis.name for link in links for axis in link.axes}
+        self.joints |= {link.joint.name for link in links if link.joint is not None and not link.axes}
 
 
 def _mimics(system: System, links: list[RigidLink]) -> dict[str, PolynomialCoupling]:
@@ -106,7 +121,7 @@ def _rpy(R: Array) -> tuple[float, float, float]:
 _ALIGNED = 1e-15
 
 
-def _link(root: Tree.Element, link: RigidLink) -> None:
+def _link(root: Tree.Element, link: RigidLink, names: _Names) -> None:
     into = Tree.SubElement(root, "link", {"name": link.name})
     if link.mass != 0.0 or link.inertia.any():
         inertial = Tree.SubElement(into, "inertial")
@@ -121,7 +136,7 @@ def _link(root: Tree.Element, link: RigidLink) -> None:
         Tree.SubElement(inertial, "inertia", moments)
     for name, position, rotation in link.frames:
         Tree.SubElement(root, "link", {"name": name})
-        _joint(root, f"{name}_fixed", "fixed", link.name, name, position, rotation)
+        _joint(root, fresh_name(f"{name}_fixed", names.joints), "fixed", link.name, name, position, rotation)
 
 
 def _joint(
@@ -134,7 +149,7 @@ def _joint(
     return into
 
 
-def _joints(root: Tree.Element, link: RigidLink, mimics: Mapping[str, PolynomialCoupling]) -> None:
+def _joints(root: Tree.Element, link: RigidLink, mimics: Mapping[str, PolynomialCoupling], names: _Names) -> None:
     assert link.joint is not None and link.parent is not None
     if not link.axes:
         kind = link.joint.traits.urdf
@@ -144,7 +159,7 @@ def _joints(root: Tree.Element, link: RigidLink, mimics: Mapping[str, Polynomial
     parent, position, rotation = link.parent, link.position, link.rotation
     for i, axis in enumerate(link.axes):
         last = i == len(link.axes) - 1
-        child = link.name if last else f"{link.name}[{i}]"
+        child = link.name if last else fresh_name(f"{link.name}[{i}]", names.links)
         if not last:
             Tree.SubElement(root, "link", {"name": child})
         _single(root, link, axis, i, parent, child, position, rotation, mimics.get(axis.name))

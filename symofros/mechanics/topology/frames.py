@@ -1,13 +1,29 @@
-"""Frames that a description names but does not have: what to say of them."""
+"""Names of frames: those by which they are asked for, and what to say of those that a description does not have."""
 
 from __future__ import annotations
 
-from collections.abc import Iterable
+from collections import Counter
+from collections.abc import Iterable, Sequence
 
 from symofros.description.system import Body
 from symofros.errors import did_you_mean
 
 _SHOWN = 12
+
+
+def full_names(body: Body) -> list[tuple[str, str]]:
+    """Own and full name, BODY.FRAME, of a body's frame and of the frames on it; a body's frame has the body's name."""
+    return [(body.name, body.name), *((frame.name, f"{body.name}.{frame.name}") for frame in body.frames)]
+
+
+def public_names(frames: Sequence[tuple[str, str]]) -> list[str]:
+    """Names by which frames are asked for, each another: their own where nothing else is called so, or else the full.
+
+    Args:
+        frames: Own and full name of each; full names are unique.
+    """
+    count, full = Counter(own for own, _ in frames), {name for _, name in frames}
+    return [own if own == name or (count[own] == 1 and own not in full) else name for own, name in frames]
 
 
 def frames_of(body: Body) -> str:

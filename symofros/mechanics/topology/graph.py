@@ -27,7 +27,7 @@ from symofros.mechanics.topology.constraints import (
 from symofros.mechanics.topology.contacts import contact_conditions
 from symofros.mechanics.topology.coordinates import coordinate_symbols, rate_symbols, speed_symbols
 from symofros.mechanics.topology.formulas import formula_problems, power_problems
-from symofros.mechanics.topology.frames import frame_remedy, frames_of
+from symofros.mechanics.topology.frames import frame_remedy, frames_of, full_names
 from symofros.mechanics.topology.friction import friction_conditions
 from symofros.mechanics.topology.joints import joint_number_problems, joint_problems
 from symofros.mechanics.topology.numbers import Numbers
@@ -130,8 +130,23 @@ class _Checker:
                     "choose another name",
                     self.where("body", WORLD),
                 )
+        yield from self._full_names_unique()
         yield from self._symbols_unique()
         yield from self.unusable_names()
+
+    def _full_names_unique(self) -> Iterator[Problem]:
+        """Frames are found by BODY.FRAME, which may be another body's name where names have dots."""
+        owners: dict[str, str] = {}
+        for body in self.system.bodies:
+            for own, name in full_names(body):
+                if owners.setdefault(name, body.name) != body.name:
+                    yield Problem(
+                        f"two frames called '{name}'",
+                        f"on bodies {listed([owners[name], body.name])}",
+                        "bodies, and frames as BODY.FRAME, have different names",
+                        "rename one of them",
+                        self.where(*(("body", name) if own == name else ("frame", body.name, own))),
+                    )
 
     def unusable_names(self) -> Iterator[Problem]:
         """Names that no file holds and no message shows."""

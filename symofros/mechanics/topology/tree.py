@@ -11,6 +11,7 @@ from symofros.description.system import Body, Inertia, RigidBody, System
 from symofros.description.values import IDENTITY, Rotation, Term, Vector
 from symofros.mechanics.beams.theories import theory_of
 from symofros.mechanics.topology.coordinates import CoordinateMap, joint_sizes, map_coordinates, speed_names
+from symofros.mechanics.topology.frames import public_names
 from symofros.mechanics.topology.graph import check
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.rigid_contacts import with_rigid_contacts
@@ -195,7 +196,9 @@ def build_tree(system: System) -> SpanningTree:
     builder = _Builder(children)
     builder.place(base, BASE, (), WORLD)
     links = tuple(builder.links[i].freeze(builder.inertias[i]) for i in range(len(builder.links)))
-    return SpanningTree(system, links, _public_names(builder.frames), map_coordinates(system, [x.joint for x in links]))
+    names = public_names([(own, full) for own, full, _, _ in builder.frames])
+    frames = tuple(NamedFrame(name, *one[1:]) for name, one in zip(names, builder.frames, strict=True))
+    return SpanningTree(system, links, frames, map_coordinates(system, [x.joint for x in links]))
 
 
 def _resolved(beam: Beam, numbers: Numbers) -> Beam:
@@ -302,14 +305,3 @@ class _Builder:
                 at = self._add_link(name, Joint(name, "fixed", beam.name), root, (), station=Station(tip, xi))
                 places[xi] = at, ()
         return places
-
-
-def _public_names(frames: list[tuple[str, str, int, Placement]]) -> tuple[NamedFrame, ...]:
-    count: dict[str, int] = {}
-    for own, _, _, _ in frames:
-        count[own] = count.get(own, 0) + 1
-    # A body frame keeps the body's name; an extremity frame of that name is then the qualified one.
-    return tuple(
-        NamedFrame(own if count[own] == 1 or own == qualified else qualified, qualified, link, placement)
-        for own, qualified, link, placement in frames
-    )

@@ -154,3 +154,14 @@ def test_mujoco_warnings_become_notes(tmp_path: Path, compiler: str, said: bool)
 )
 def test_shapes_without_contacts_get_no_note(tmp_path: Path, text: str) -> None:
     assert not sf.load(write(tmp_path, text + HINGE.format(""))).notes
+
+
+@pytest.mark.parametrize("flag", ["constraint", "frictionloss", "limit"])
+def test_friction_and_limits_that_are_switched_off_do_not_act(tmp_path: Path, flag: str) -> None:
+    text = HINGE.format('frictionloss="2" range="-1 1"')
+    path = write(tmp_path, f'<option><flag {flag}="disable"/></option>{text}')
+    off = sf.load(path, dissipation="all", limits="stops")
+    (joint,) = (body.joint for body in off.bodies if body.joint is not None)
+    kinds = {type(element) for element in joint.elements}
+    gone = {"constraint": {sf.Friction, sf.Stop}, "frictionloss": {sf.Friction}, "limit": {sf.Stop}}[flag]
+    assert kinds == {sf.Friction, sf.Stop} - gone

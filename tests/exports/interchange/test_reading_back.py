@@ -218,3 +218,56 @@ def test_other_targets_note_that_limits_are_dropped(
     drawer = sf.System("drawer", (sf.RigidBody("tray", joint, sf.Inertia(1.0)),))
     notes = sf.export(drawer, target, tmp_path).notes  # type: ignore[arg-type]
     assert {*notes} >= {f"limits of {measure} dropped: k" for measure in ("travel", "speed", "effort")}
+
+
+def _arm(*bodies: tuple[str, sf.Joint, tuple[str, ...]], constraints: tuple[sf.Closure, ...] = ()) -> sf.System:
+    """Bodies on their joints, the k-th of its frames k + 1 decimetres along x."""
+    made = tuple(
+        sf.RigidBody(
+            name,
+            joint,
+            sf.Inertia(1.0, (0.1, 0.0, 0.2), (0.1, 0.2, 0.2)),
+            tuple(sf.Frame(frame, (0.1 * (k + 1), 0.0, 0.0)) for k, frame in enumerate(frames)),
+        )
+        for name, joint, frames in bodies
+    )
+    return sf.System("named", made, constraints=constraints)
+
+
+CLASHES = {
+    "joint of a frame": _arm(
+        ("a", sf.Joint("tip_fixed", "revolute"), ("tip",)),
+        ("b", sf.Joint("x", "revolute", "a", "tip"), ("c", "c_fixed")),
+    ),
+    "link of a series": _arm(("a", sf.Joint("u", "universal"), ()), ("a[0]", sf.Joint("q", "revolute", "a"), ())),
+    "dots": _arm(("a", sf.Joint("q1", "revolute"), ("tip", "b.tip")), ("b", sf.Joint("q2", "revolute", "a"), ("tip",))),
+    "ground": _arm(("a", sf.Joint("q1", "revolute"), ("world",))),
+}
+
+
+@pytest.mark.parametrize("case", CLASHES)
+def test_names_that_files_add_are_no_names_of_the_system(tmp_path: Path, case: str) -> None:
+    system = CLASHES[case]
+    model = sf.compile(system, sf.Options(backend="interpreter"))
+    q = np.linspace(0.1, 0.7, model.nq)
+    file = sf.export(system, "urdf", tmp_path / "urdf").files[0]
+    engine = pinocchio.buildModelFromUrdf(str(file))
+    order = [model.names.q.index(name) for name in list(engine.names)[1:]]
+    data = engine.createData()
+    places = [x for value in q[order] for x in (np.cos(value), np.sin(value))]  # Turns without limits.
+    pinocchio.framesForwardKinematics(engine, data, np.array(places))
+    found = {frame.name: data.oMf[k].translation for k, frame in enumerate(engine.frames)}
+    for name in model.names.frames:
+        close(found[name], model.frame_pose(name, q)[0], SAME)
+    mujoco.MjModel.from_xml_path(str(sf.export(system, "mjcf", tmp_path / "mjcf").files[0]))
+
+
+def test_closures_of_bodies_with_frames_called_origin_stand_on_the_bodies(tmp_path: Path) -> None:
+    closure = sf.Closure("c", ("a", None), ("b", None), ("x", "y", "z"), ())
+    system = _arm(
+        ("a", sf.Joint("q1", "revolute"), ("origin",)),
+        ("b", sf.Joint("q2", "revolute", "a", "origin"), ("origin",)),
+        constraints=(closure,),
+    )
+    engine = mujoco.MjModel.from_xml_path(str(sf.export(system, "mjcf", tmp_path).files[0]))
+    np.testing.assert_array_equal(engine.site_pos[[engine.eq_obj1id[0], engine.eq_obj2id[0]]], np.zeros((2, 3)))

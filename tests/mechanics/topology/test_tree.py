@@ -57,3 +57,19 @@ def test_a_coordinate_sticks_with_all_its_friction() -> None:
     assert [one.coordinate for one in found] == list(coordinate_names(joint))
     assert [sf.evaluate(one.breakaway, {"s": 2.0}) for one in found] == [6.0, 5.0]
     assert not list(sticking_coordinates(replace(joint, prescribed=True)))
+
+
+def test_frames_whose_names_have_dots_are_found_by_one_name_each() -> None:
+    """A frame 'b.tip' of body a is not what 'b.tip' means where body b has a frame 'tip'."""
+    tree = build_tree(sf.System("s", [body("a", "world", frames=("tip", "b.tip")), body("b", "a", frames=("tip",))]))
+    assert [frame.name for frame in tree.frames] == ["world", "a", "a.tip", "a.b.tip", "b", "b.tip"]
+    assert tree.frame("b.tip").link == 1 and tree.frame("a.b.tip").link == 0
+
+
+@pytest.mark.parametrize("other", ["a.tip", "world.tip"])
+def test_a_body_called_as_the_frame_of_another_is_refused(other: str) -> None:
+    """What was fixed to frame 'tip' of body 'a' was fixed to body 'a.tip'."""
+    ground = sf.RigidBody("world", frames=[sf.Frame("tip")])
+    stated = [ground, body(other, "world"), body("a", "world", frames=("tip",))]
+    with pytest.raises(sf.DescriptionError, match=f"two frames called '{other}'"):
+        build_tree(sf.System("s", stated))
