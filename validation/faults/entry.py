@@ -30,6 +30,7 @@ KINDS = (
 )
 # Engine, by its name on PyPI -> the packages by which its scripts may import it.
 PACKAGES = {
+    "PyNiteFEA": {"Pynite"},
     "adam-robotics": {"adam"},
     "bsk": {"Basilisk"},
     "casadi": {"casadi"},
@@ -45,6 +46,8 @@ PACKAGES = {
     "pin": {"pinocchio"},
     "pybullet": {"pybullet", "pybullet_utils"},
     "roboticstoolbox-python": {"roboticstoolbox", "spatialmath"},
+    "rocketpy": {"rocketpy"},
+    "scikit-robot": {"skrobot"},
     "spatialmath-python": {"spatialmath"},
     "sympy": {"sympy"},
     "trimesh": {"trimesh"},
