@@ -14,7 +14,7 @@ CASES = [f"tests/a.py::many[{k}]" for k in range(20)] + ["tests/a.py::few[1]", "
 SECONDS = {"a.py::many": 0.1, "a.py::few": 3.0}
 
 
-def test_as_many_cases_are_drawn_as_fit_into_their_share_and_others_on_other_days() -> None:
+def test_drawn_cases_fit_into_their_share_and_change_by_day() -> None:
     gone = draw.left_out(CASES, SECONDS, "2026-11-27")
     assert len(gone & set(CASES[:20])) == 18 and gone == draw.left_out(CASES[::-1], SECONDS, "2026-11-27")
     days = [draw.left_out(CASES, SECONDS, str(day)) for day in range(100)]

@@ -122,7 +122,7 @@ def test_each_note_is_triggered_by_a_test() -> None:
     assert not missing, "notes without a test that quotes them:\n" + "\n".join(missing)
 
 
-def test_each_note_of_a_run_is_of_a_kind_and_each_kind_is_said() -> None:
+def test_each_note_of_a_run_has_one_kind_and_each_kind_occurs() -> None:
     """The table of kinds, which docs/howto/simulating.md shows, is that of what the sources say."""
     patterns = {
         name: re.compile(".*".join(re.escape(part.strip()) for part in kind.says.split("…")), re.DOTALL)

@@ -34,7 +34,7 @@ def spoil(value: Any) -> None:
 
 
 @pytest.mark.parametrize("case", CASES)
-def test_what_is_stated_stays(case: str) -> None:
+def test_fields_do_not_change_with_their_arguments(case: str) -> None:
     made_of, arguments, name = CASES[case]
     made = made_of(**arguments)
     before = repr(getattr(made, name))

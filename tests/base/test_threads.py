@@ -29,7 +29,7 @@ def test_without_threads_items_follow_each_other(monkeypatch: pytest.MonkeyPatch
     assert done == ["a", "b", "c"]
 
 
-def test_what_one_raises_is_raised_after_all_have_ended() -> None:
+def test_an_exception_is_raised_after_all_threads_have_ended() -> None:
     done: list[int] = []
 
     def work(item: int) -> None:

@@ -65,6 +65,6 @@ def test_a_mechanism_tells_functions_of_its_motion() -> None:
     np.testing.assert_allclose(momentum[last], model.centroidal_momentum(q[last], v[last], par=after), atol=1e-12)
 
 
-def test_what_a_mechanism_can_not_tell_is_refused() -> None:
+def test_outputs_that_a_mechanism_does_not_have_are_refused() -> None:
     with pytest.raises(sf.DescriptionError, match="'contact_forces' has no entries"):
         sf.Simulation(diagram(CASES["grasp"], tells=("contact_forces",)))

@@ -73,7 +73,7 @@ def test_loads_along_sections_are_taken_by_theories_of_any_bending_alone(theory:
         (lambda: sf.Joint("q", "revolute", upper=1.0), "limits=sf.Limits"),  # type: ignore[call-arg]
     ],
 )
-def test_what_files_and_other_programs_state_there_leads_to_its_place(make: Any, said: str) -> None:
+def test_misplaced_entries_of_files_and_other_programs_lead_to_their_place(make: Any, said: str) -> None:
     """The nearest entry was 'constraints' of contacts, 'rotation' of friction."""
     with pytest.raises(sf.DescriptionError, match=re.escape(said)):
         make()

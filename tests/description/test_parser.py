@@ -58,5 +58,5 @@ def test_random_text_never_crashes(text: str) -> None:
 
 
 @pytest.mark.parametrize("written", sorted(set(_OTHERWISE.values())))
-def test_what_stands_for_other_functions_is_a_formula(written: str) -> None:
+def test_names_of_other_functions_are_parsed(written: str) -> None:
     assert parse(written).args

@@ -172,7 +172,7 @@ def test_files_state_conditions(tmp_path: Path) -> None:
         ("{enabled: wave.y, by: 3}", ["condition does not fit", "one of enabled"]),
     ],
 )
-def test_what_a_file_says_wrong_is_told_with_its_line(stated: str, words: list[str], tmp_path: Path) -> None:
+def test_faults_of_conditions_in_files_have_their_line(stated: str, words: list[str], tmp_path: Path) -> None:
     sf.save_diagram(summing(), tmp_path / "part.yaml")
     head = "symofros_diagram: 1\nblocks:\n  wave: {kind: sine}\nparts:\n  part:\n    file: part.yaml\n"
     (tmp_path / "d.yaml").write_text(f"{head}    inputs: {{u: wave.y}}\n    condition: {stated}\n")
@@ -218,7 +218,9 @@ def _with(block: Any, outlet: str = "", inner: bool = False, **wires: str) -> sf
         (summing(), {"states": "kept"}, ["unknown states"]),
     ],
 )
-def test_what_no_condition_can_hold_is_refused(part: sf.Diagram, condition: dict[str, Any], words: list[str]) -> None:
+def test_unsuitable_parts_and_conditions_are_refused(
+    part: sf.Diagram, condition: dict[str, Any], words: list[str]
+) -> None:
     diagram = whole({})
     with pytest.raises(sf.DescriptionError) as caught:
         diagram.include("part", part, None, sf.Condition(**{"enabled": "enable", **condition}), u="given")

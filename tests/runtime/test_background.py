@@ -59,7 +59,7 @@ def test_the_compiled_model_has_the_settings_of_the_first(cache: Path) -> None:
     assert unchecked.ready().with_parameters(m=-1.0).parameters == {"m": -1.0}
 
 
-def test_a_failure_of_the_compiler_is_told_by_the_compiled_model(cache: Path) -> None:
+def test_a_failure_of_the_compiler_is_raised_by_ready(cache: Path) -> None:
     model = sf.compile(load_model("pendulum"), sf.Options(background=True, flags=("-no-such-flag",)))
     assert np.isfinite(model.mass_matrix([0.2])).all()
     with pytest.raises(sf.CompileError, match="no-such-flag"):

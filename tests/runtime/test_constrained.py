@@ -109,7 +109,7 @@ def test_rows_that_a_pivot_leaves_alone_are_not_judged_again(
     assert (np.abs(made.L @ made.U - G)[made.rows] <= 1e-9 * scale[made.rows]).all()
 
 
-def test_what_moves_no_mass_is_no_pivot_by_a_weak_entry() -> None:
+def test_a_weak_entry_of_a_massless_speed_is_no_pivot() -> None:
     """Beside a heavy body that the row binds: an entry that is rounding of none, of a speed without inertia."""
     measures = Measures((0,), (LENGTH,), (TRANSLATION,) * 3)
     G = np.array([[0.0, 1.0, 1e-8]])

@@ -193,7 +193,7 @@ def test_derivatives_by_quaternion_components_are_tangential(m: sf.Model) -> Non
 
 
 @pytest.mark.parametrize("backend", ["c", "interpreter"])
-def test_prescribed_rotations_are_judged_alike(backend: str) -> None:
+def test_prescribed_rotations_are_checked_by_calls_and_batches(backend: str) -> None:
     m = model("carried", backend)
     rng = np.random.default_rng(2)
     u = rng.normal(size=(5, m.nu))

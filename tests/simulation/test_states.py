@@ -279,7 +279,7 @@ int main(void) {
         lambda m: m.inverse_dynamics_second_derivatives([0.0], [0.0], [0.0]),
     ],
 )
-def test_what_has_no_states_says_so(ask: Any) -> None:
+def test_models_without_states_say_so(ask: Any) -> None:
     with pytest.raises(sf.SymofrosError, match="has states of forces"):
         ask(dragged())
 

@@ -84,7 +84,7 @@ def ends(process: int) -> bool:
 
 
 @pytest.mark.parametrize("fresh", [False, True])
-def test_each_end_of_a_job_is_told_and_the_next_job_is_done(fresh: bool, tmp_path: Path) -> None:
+def test_each_end_of_a_job_is_reported_and_the_next_job_is_done(fresh: bool, tmp_path: Path) -> None:
     with WorkerProcess(fresh=fresh, log=tmp_path / "log") as worker:
         for fate, (wanted, code, reason) in FATES.items():
             answers: list[str] = []

@@ -160,7 +160,7 @@ def test_a_first_state_that_does_not_stay_is_noted(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("nominal", "said"), [(2.0 * 9.81, False), (None, True), (0.0, True)])
-def test_inputs_that_hold_the_first_state_make_it_a_rest(nominal: float | None, said: bool) -> None:
+def test_constant_inputs_that_hold_the_first_state_make_it_a_rest(nominal: float | None, said: bool) -> None:
     """A mass that hangs on its input; without one it falls."""
     slide = sf.Joint("z", "prismatic", axis=(0, 0, 1), actuated=True)
     diagram = sf.Diagram("hold")

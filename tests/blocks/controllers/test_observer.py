@@ -65,7 +65,7 @@ def test_a_sampled_observer_follows_it() -> None:
     assert np.abs(run["seen.r"] - filtered(tau)).max() < 3.0 * _RATE * _STEP * np.abs(tau).max()
 
 
-def test_what_an_observer_can_not_tell_apart_is_refused() -> None:
+def test_unsuitable_gains_and_mechanisms_of_observers_are_refused() -> None:
     with pytest.raises(sf.DescriptionError, match="gain is out of bounds"):
         MomentumObserver(name="o", model="m", gain=2000.0, period=1e-3)
     diagram = sf.Diagram("bars")

@@ -124,7 +124,7 @@ def test_native_code_that_fails_ends_the_run_in_words(wilful: str, wish: float, 
     assert not run.outcome.ok and words in said and "block 'unit'" in said and "t = 0.2 s" in said
 
 
-def test_what_native_code_prints_is_no_answer(wilful: str) -> None:
+def test_output_printed_by_native_code_is_no_answer(wilful: str) -> None:
     run = sf.Simulation(fed(wilful, 4.0, 4.0, allow_native=True)).run(0.2, record=0.1)
     assert run.outcome.ok and (run["unit.pump_y"] == 4.0).all()
 
@@ -177,7 +177,7 @@ def test_consent_to_certain_bytes_is_to_no_others(wilful: str, tmp_path: Path) -
         ({"variant": "model_exchange"}, "co_simulation"),
     ],
 )
-def test_what_does_not_fit_the_unit_is_refused(wilful: str, fields: dict[str, Any], words: str) -> None:
+def test_fields_that_do_not_fit_the_unit_are_refused(wilful: str, fields: dict[str, Any], words: str) -> None:
     diagram = sf.Diagram("wrong")
     diagram.add(blocks.FMU(name="unit", file=wilful, period=0.1, allow_native=True, **fields))
     with pytest.raises(sf.DescriptionError, match=words):

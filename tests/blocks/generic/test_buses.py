@@ -73,14 +73,14 @@ def test_files_state_buses(tmp_path: Path) -> None:
         ([], ["0 of them"]),
     ],
 )
-def test_names_that_are_not_there_are_told(signals: list[str], words: list[str]) -> None:
+def test_unknown_signals_of_a_bus_are_refused_by_name(signals: list[str], words: list[str]) -> None:
     with pytest.raises(sf.DescriptionError) as caught:
         sf.Simulation(bus(signals))
     for word in words:
         assert word in str(caught.value), str(caught.value)
 
 
-def test_what_is_no_bus_is_refused() -> None:
+def test_inputs_that_are_no_bus_are_refused() -> None:
     diagram = bus(["z"])
     diagram.wires["some", "bus"] = "q.y"
     with pytest.raises(sf.DescriptionError, match="its input is no bus"):

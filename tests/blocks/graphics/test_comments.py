@@ -43,6 +43,6 @@ def test_a_file_keeps_its_words(tmp_path: Path) -> None:
     ("changes", "words"),
     [({"text": "x" * (MOST + 1)}, f"{MOST + 1} characters"), ({"period": 0.1}, "no samples"), ({"offset": 1.0}, "1.0")],
 )
-def test_what_a_comment_can_not_be(changes: dict[str, object], words: str) -> None:
+def test_invalid_comments_are_refused(changes: dict[str, object], words: str) -> None:
     with pytest.raises(sf.DescriptionError, match=words):
         Comment(**{"name": "about", "text": "x", **changes})

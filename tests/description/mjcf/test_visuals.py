@@ -139,7 +139,7 @@ def test_textures_are_those_of_materials(
     ],
     ids=["group", "missing", "turned and stretched", "a capsule about a mesh"],
 )
-def test_what_can_not_be_drawn_is_left_out(change: tuple[str, str], tmp_path: Path) -> None:
+def test_shapes_that_can_not_be_drawn_are_left_out(change: tuple[str, str], tmp_path: Path) -> None:
     file = written(tmp_path)
     file.write_text(file.read_text().replace(*change))
     system = sf.load(file)

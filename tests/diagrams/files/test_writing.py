@@ -53,7 +53,7 @@ def test_diagrams_built_in_python_survive_saving(tmp_path: Path) -> None:
     assert np.array_equal(runs[0]["left.effort"], runs[1]["left.effort"])
 
 
-def test_what_inlets_state_survives_saving(tmp_path: Path) -> None:
+def test_inlets_survive_saving(tmp_path: Path) -> None:
     d = control()
     d.add_inlet("offset", "pd.v_desired", shape=(2,), unit="rad/s", start=[0.5, 0.0])
     sf.save_diagram(d, tmp_path / "d.yaml")

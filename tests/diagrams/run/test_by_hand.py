@@ -132,7 +132,7 @@ def not_finite(t: float, inputs: Any) -> dict[str, list[float]]:
 
 
 @pytest.mark.parametrize("function", [raises, not_finite])
-def test_an_end_is_told_as_by_a_run(function: Callable[[float, Any], Any]) -> None:
+def test_the_outcome_of_a_stepper_equals_that_of_a_run(function: Callable[[float, Any], Any]) -> None:
     simulation = sf.Simulation(pushed(function))
     want = simulation.run(0.2, output=0.01, dt=1e-3).outcome
     stepper = simulation.stepper(dt=1e-3)

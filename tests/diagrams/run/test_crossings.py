@@ -64,7 +64,7 @@ def test_relays_begin_as_their_inputs_are() -> None:
     assert [run[f"{name}.y"].tolist() for name in ("on", "kept", "off")] == [[x] * 11 for x in (1.0, 1.0, 0.0)]
 
 
-def test_crossings_without_end_are_told() -> None:
+def test_endless_crossings_end_a_run() -> None:
     """A ring of two relays, one of which turns the other round."""
     diagram = relays(a="turned.y", b="a.y")
     diagram.add(blocks.Formula(name="turned", formulas={"y": "1 - b"}), b="b.y")

@@ -90,7 +90,7 @@ def test_instants_have_the_bits_of_the_compiled_run_where_signals_do() -> None:
     assert len(run.crossings) == 24 and run.crossings == other.crossings and np.array_equal(run.t, other.t)
 
 
-def test_what_rounding_tells_apart_is_met_at_one_instant() -> None:
+def test_crossings_that_differ_by_rounding_are_met_at_one_instant() -> None:
     """In any order; none is lost behind the one that is found first."""
     runs = [sf.Simulation(rounded(), SAME_BITS).interpret(1.5, dt=5e-3), sf.Simulation(rounded()).run(1.5, dt=5e-3)]
     for run in runs:
@@ -99,7 +99,7 @@ def test_what_rounding_tells_apart_is_met_at_one_instant() -> None:
         ]
 
 
-def test_crossings_without_end_end_an_interpreted_run_too() -> None:
+def test_endless_crossings_end_an_interpreted_run() -> None:
     diagram = sf.Diagram("chatter")
     diagram.add(blocks.Formula(name="error", formulas={"y": "t - 0.51 - 0.2*u"}), u="relay.y")
     diagram.add(blocks.Relay(name="relay", lower=-0.05, upper=0.05, on=1.0, off=0.0), u="error.y")

@@ -307,7 +307,7 @@ class Thrown(ForwardDynamics):
         ({"events": {"a": "t - 0.1"}, "engaged": True}, "engaged constraints beside events"),
     ],
 )
-def test_what_can_not_be_done_is_said_of_the_block(fields: dict[str, Any], says: str) -> None:
+def test_impossible_switching_is_refused_by_the_name_of_the_block(fields: dict[str, Any], says: str) -> None:
     of = diagram(CASES["bounce"], **fields)
     if fields.get("engaged"):
         of.add(Constant(name="on", value=[1.0]))

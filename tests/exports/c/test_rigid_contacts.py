@@ -108,7 +108,7 @@ def test_packages_step_implicitly_over_contacts(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize(("pull", "chosen"), [(5.0, {}), (8.0, {"functions": ["mass_matrix"]})])
-def test_what_a_caller_changes_between_calls_counts(tmp_path: Path, pull: float, chosen: dict[str, Any]) -> None:
+def test_changes_by_the_caller_between_calls_take_effect(tmp_path: Path, pull: float, chosen: dict[str, Any]) -> None:
     """A force beyond friction lets a box slide from that call on; a box that is lifted by hand falls, or flies up."""
     mu, mass, lift, up = 0.3, 2.0, 0.02, 0.8
     program = packaged(tmp_path, BY_HAND, box_system(mu), {"free.pz": 0.1}, **chosen)
@@ -139,7 +139,7 @@ def test_packages_tell_that_balls_struck_in_sequence(tmp_path: Path, share: floa
     assert status == f"status {Status.FINISHED}, in sequence at {when} s"
 
 
-def test_what_packages_refuse(tmp_path: Path) -> None:
+def test_packages_refuse_methods_without_modes_and_targets_without_events(tmp_path: Path) -> None:
     """Methods that choose no modes, and targets that look for no events."""
     with pytest.raises(sf.SymofrosError, match="is rigid"):
         sf.export(ball_system(), "c", tmp_path / "c", method="generalized_alpha")

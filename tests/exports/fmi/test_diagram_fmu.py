@@ -181,7 +181,7 @@ def test_a_unit_moves_as_the_run(version: int, case: str, tmp_path: Path) -> Non
         np.testing.assert_allclose(found, wanted[1:], **bound)
 
 
-def test_importers_are_told_why_a_motion_has_ended(tmp_path: Path) -> None:
+def test_importers_get_the_reason_why_a_motion_has_ended(tmp_path: Path) -> None:
     """A rod that leans against its slide, with too much friction from an instant on."""
     rod = replace(rod_system(sf.formula("mu")), parameters=(sf.Parameter("mu", 0.1),))
     rough = {"rough": sf.Event("t - 0.02", action={"mu": 1.6})}

@@ -57,7 +57,7 @@ def test_serialised_states_know_which_events_have_acted(tmp_path: Path, version:
     assert all(np.array_equal(ends[0], end) for end in ends[1:])
 
 
-def test_importers_are_told_that_a_motion_has_ended(tmp_path: Path) -> None:
+def test_importers_get_the_end_of_a_motion(tmp_path: Path) -> None:
     """Who repeats a step that is discarded asks whether that makes sense: a start below the floor never moves on."""
     unit = str(exported(RESTS.system, 2, tmp_path, events=RESTS.events, start=RESTS.start))
     with heard() as (logger, log):
@@ -106,7 +106,7 @@ def test_a_ball_strikes_as_co_simulation_begins(tmp_path: Path) -> None:
     assert done["q.'free.pz'"][-1] == pytest.approx(0.1 + 0.5 * 0.05 - 0.5 * 9.81 * 0.05**2, abs=1e-12)
 
 
-def test_importers_are_told_of_painleves_paradox(tmp_path: Path) -> None:
+def test_importers_get_a_warning_of_painleves_paradox(tmp_path: Path) -> None:
     """A rod that leans against its slide, with too much friction."""
     start = {"z": float(np.cos(0.5)), "angle": 0.5, "dx": -2.0}
     unit = str(exported(rod_system(1.6), 2, tmp_path, start=start))
@@ -116,7 +116,7 @@ def test_importers_are_told_of_painleves_paradox(tmp_path: Path) -> None:
 
 
 @pytest.mark.parametrize("version", [2, 3])
-def test_importers_are_told_once_a_run_of_strikes_in_sequence(tmp_path: Path, version: int) -> None:
+def test_importers_get_one_warning_a_run_of_strikes_in_sequence(tmp_path: Path, version: int) -> None:
     """After a reset again; a run without spin, after one that had such a strike, has none."""
     names = [f"free.{name}" for name in ("vx", "vy", "vz", "wx", "wy", "wz")]
     start = {"free.pz": 0.1} | dict(zip(names, WITHOUT_ANSWER, strict=True))

@@ -220,7 +220,7 @@ def test_a_rigid_beam_has_the_inertia_of_its_sections(rotary: bool) -> None:
         ({"position": (1.0, 0.0, 0.0), "armature": 0.3}, ["coordinates of free joints", "armature of free joints"]),
     ],
 )
-def test_what_a_free_joint_means_otherwise_in_mujoco_is_noted(tmp_path: Path, stated: Any, notes: list[str]) -> None:
+def test_the_other_meaning_of_a_free_joint_in_mujoco_is_noted(tmp_path: Path, stated: Any, notes: list[str]) -> None:
     """MuJoCo counts it from the world: the same numbers are another pose; without a note pose and motion agree."""
     body = sf.RigidBody("base", sf.Joint("float", "free", **stated), sf.Inertia(2.0, (0.1, 0.0, 0.2), (0.3, 0.4, 0.5)))
     system = sf.System("floating", (body,))

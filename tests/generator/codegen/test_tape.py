@@ -95,7 +95,7 @@ def test_run_time_parameters_count(rng: np.random.Generator) -> None:
         np.testing.assert_array_equal(values, expected)
 
 
-def test_slots_are_given_back_and_their_end_is_told() -> None:
+def test_slots_are_returned_and_running_out_of_them_is_refused() -> None:
     """A process holds so many functions at a time, and as many models one after the other as it likes."""
     compilation = Compilation(load_model("pendulum"), sf.Options(("kinetic_energy",)))
     parts, machine = tape_functions(compilation.program), tape_machine(machine_text())

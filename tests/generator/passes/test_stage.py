@@ -44,7 +44,7 @@ def test_an_output_that_is_a_parameter_needs_no_work_per_call() -> None:
     np.testing.assert_array_equal(model.with_parameters(m=4.0).mass_matrix([[0.5], [0.6]]), [[[4.0]], [[4.0]]])
 
 
-def test_what_is_left_to_parameters_by_terms_that_cancel_is_hoisted() -> None:
+def test_parameter_terms_left_by_cancellation_are_hoisted() -> None:
     """3 (q0 + p0 p1 + q1 - q0 - q1) q2: a vector by states has no place for the product of a number and a parameter."""
     g = Graph()
     p, q = [g.input("par", i) for i in range(2)], [g.input("q", i) for i in range(3)]

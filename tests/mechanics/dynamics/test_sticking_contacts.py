@@ -126,7 +126,7 @@ def test_bristles_that_are_bent_beyond_the_limit_relax_with_their_time() -> None
     assert m.state_rates(q, v + 1.0, [0.0], z=z) == pytest.approx(-(K / DAMPING) * z)
 
 
-def test_what_is_bent_along_the_normal_pulls_nothing_and_relaxes(rng: np.random.Generator) -> None:
+def test_bristles_bent_along_the_normal_exert_no_force_and_relax(rng: np.random.Generator) -> None:
     """The normal turns under bent bristles as a ball rolls on a curved surface."""
     m = sf.compile(two_bodies(replace(touching("sphere", **BRISTLES), points=((0.0, 0.0, 0.0),))), INTERPRETED)
     q, _, _ = (x[0] for x in bent(m, rng, 1))

@@ -65,7 +65,7 @@ def test_a_library_in_pieces_computes_what_all_chunks_do(
     assert list(y) == [3.0 + i for i in range(13)]
 
 
-def test_a_piece_that_does_not_compile_is_told(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_a_piece_that_does_not_compile_is_an_error(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     toolchain = find_toolchain()
     assert toolchain is not None
     monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "cache"))

@@ -48,7 +48,7 @@ def test_the_least_change_shares_a_load_by_stiffness() -> None:
 
 
 @pytest.mark.parametrize("element", [_BRISTLES, sf.Hysteresis(_S0, _F_S, 3.0)])
-def test_what_would_yield_stays_as_in_the_guess_and_the_block_moves(element: Any) -> None:
+def test_yielding_elements_stay_as_guessed_and_the_block_moves(element: Any) -> None:
     """Beyond 3 N nothing holds it at the guess: the spring takes all. Short of it, the element does."""
     model = block(element, sf.Spring(30.0))
     held, moved = sf.equilibrium(model, u=[0.999 * _F_S]), sf.equilibrium(model, u=[1.01 * _F_S])

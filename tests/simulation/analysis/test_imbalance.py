@@ -17,7 +17,7 @@ def test_changes_of_eigenvalues_are_shares_of_each_to_the_nearest_other() -> Non
     assert np.isinf(_changes(some, others[:0])).all()
 
 
-def test_the_largest_change_counts_either_way_by_those_that_are_more_than_rounding() -> None:
+def test_the_largest_change_counts_in_both_directions_above_rounding() -> None:
     here, there = np.array([2.0 + 0j, 5.0]), np.array([2.0 + 0j, 8.0])
     assert _change((here, here), (there, there)) == 0.6
     assert _change((here, here[:1]), (there, there)) == 0.375

@@ -137,7 +137,7 @@ class TestModes:
         k = int(np.abs(a).argmax())
         assert self.NO_EQUILIBRIUM in note and f"'{m.names.v[k]}' accelerates by {a[k]:.3g}," in note
 
-    def test_what_moves_on_to_the_same_equations_is_not_noted(self) -> None:
+    def test_states_that_move_on_to_the_same_equations_are_not_noted(self) -> None:
         """A fall, and a cart under a constant push with its pendulum at the angle that stays."""
         body = sf.RigidBody("body", sf.Joint("free", "free"), sf.Inertia(2.0, (0.1, 0.2, 0.3), (1.0, 2.0, 2.5)))
         falling = sf.compile(sf.System("falling", (body,)))

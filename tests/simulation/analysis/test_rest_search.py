@@ -120,7 +120,7 @@ def rate_of(rest: object, name: str) -> float:
     return float(found[1])
 
 
-def test_an_upright_rest_is_told_from_a_hanging_one() -> None:
+def test_an_upright_rest_is_distinguished_from_a_hanging_one() -> None:
     """At sqrt(m g L / J); what is held does not leave."""
     rod = sf.Inertia(1.5, (0.4, 0.0, 0.0), (0.0, 0.02, 0.02))
     arm = sf.RigidBody("arm", sf.Joint("q", "revolute", axis=(0, 1, 0)), rod)
@@ -144,7 +144,7 @@ def test_a_small_body_is_found_far_from_its_guess(above: float) -> None:
 
 
 @pytest.mark.parametrize("length", [0.1, 100.0])
-def test_the_speed_that_leaves_a_rest_most_is_told_by_its_reach(length: float) -> None:
+def test_the_fastest_unstable_speed_is_found_relative_to_its_reach(length: float) -> None:
     """A rod falls on its sledge, of 1 kg each: a long one pushes it by more metres than it turns by radians."""
     sledge = sf.RigidBody("sledge", sf.Joint("x", "prismatic", axis=(1, 0, 0)), sf.Inertia(1.0))
     inertia = sf.Inertia(1.0, (length, 0, 0), (0, 0.1 * length**2, 0.1 * length**2))

@@ -43,7 +43,7 @@ def test_bennetts_linkage_moves_as_its_energy_says(method: str, dt: float | None
     assert abs(bennett.late(model, START, RATE, float(run.q[-1, 0]), END)) < bound
 
 
-def test_a_batch_and_the_interpreter_move_alike() -> None:
+def test_a_batch_and_the_interpreter_give_the_same_motion() -> None:
     """The rank is decided in the function itself: whoever calls it gets the same motion."""
     bennett, model = linkage(0)
     q, v = bennett.posture(START), bennett.speeds(START, RATE)

@@ -36,7 +36,7 @@ def test_a_box_that_rocks_from_edge_to_edge_comes_to_rest(method: str, off: floa
 
 
 @pytest.mark.parametrize("method", ["dopri5", "rk4"])
-def test_what_several_feet_lose_at_once_is_counted_once(method: str) -> None:
+def test_energy_lost_by_several_feet_at_once_is_counted_once(method: str) -> None:
     """A box that falls flat: its four feet strike at one instant, each with an event of its own."""
     model = box(0.5, height=0.05)
     run = sf.simulate(model, rested(model, 0.3), [0, 0, -1.0, 0, 0, 0], t_end=0.4, method=method, dt=1e-3)
@@ -58,7 +58,7 @@ BOX = [(x, y, -0.05) for x in (-0.2, 0.2) for y in (-0.1, 0.1)]
         (DISC, 0.7, 0.6, 224, 0.9),  # As it begins, at speeds of rounding, a slip turns by more than a right angle.
     ],
 )
-def test_what_is_thrown_lands(
+def test_thrown_bodies_land(
     feet: list[tuple[float, float, float]], restitution: float, friction: float, seed: int, t_end: float
 ) -> None:
     """Found among 300 such motions: balls that fell through the plane, forces of friction that drove them."""

@@ -184,7 +184,7 @@ def test_times_that_are_asked_for_are_recorded_across_strikes() -> None:
         assert run.q[:, 0] == pytest.approx(np.where(times < end, height, 0.0), abs=1e-10)
 
 
-def test_what_is_refused() -> None:
+def test_invalid_contacts_starts_and_forces_are_refused() -> None:
     """What is no contact as it is stated; starts that penetrate or draw, and forces of the wrong sign, as outcomes."""
     wrong: tuple[dict[str, Any], ...] = (
         {"direction": "both"},

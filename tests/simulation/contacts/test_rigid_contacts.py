@@ -150,7 +150,7 @@ def test_a_rod_strikes_by_stronges_coefficient(seed: int) -> None:
     assert strike.impulse[[1, 0]] == pytest.approx(P, abs=3e-4)
 
 
-def test_painleves_rod_is_said() -> None:
+def test_painleves_paradox_of_a_rod_is_noted() -> None:
     """Below mu = 4/3 each slide has one motion; above, where the rod leans against its slide, none or several."""
     for angle in (0.3, 0.5, 0.7):
         q = [0.0, cos(angle), angle]
@@ -163,7 +163,7 @@ def test_painleves_rod_is_said() -> None:
                 assert "Painleve" in run.outcome.reason and run.outcome.t == 0.0
 
 
-def test_two_motions_of_painleves_rod_are_said() -> None:
+def test_two_possible_motions_of_painleves_rod_are_noted() -> None:
     """Where it turns so fast that its tip leaves by itself, and friction could press it down."""
     angle, slip = 0.5, -2.0
     w = sqrt(1.5 * G / cos(angle))
@@ -330,7 +330,7 @@ def test_events_read_distances_and_slips() -> None:
     assert run.events[0].t == pytest.approx(1 / (3.5 * 0.5 * G), abs=1e-12)
 
 
-def test_what_is_refused(tmp_path: Path) -> None:
+def test_invalid_starts_numbers_and_methods_are_refused(tmp_path: Path) -> None:
     """Starts and numbers that mean nothing, and whatever does not choose modes, in words."""
     inside = rested(ball(), 0.09)
     assert sf.simulate(ball(), inside, t_end=0.1).outcome.kind == "input failed"

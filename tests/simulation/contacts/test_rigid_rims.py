@@ -195,7 +195,7 @@ def test_steps_over_a_flat_rim_end_where_it_lies(method: Any, friction: float, s
             assert not exact or np.hypot(*axis(run.q[-1])[:2]) == pytest.approx(0.009, abs=1e-6)
 
 
-def test_a_rim_that_lies_on_its_plane_is_said() -> None:
+def test_a_rim_that_lies_on_its_plane_is_refused_in_words() -> None:
     """Where it begins so, and where it comes to lie; on points along the rim the disc rests."""
     model = disc(0.5)
     begins = sf.simulate(model, tilted(model, 0.0), t_end=0.1)

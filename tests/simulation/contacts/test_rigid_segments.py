@@ -272,7 +272,7 @@ def test_a_capsule_tips_over_the_end_of_the_one_below() -> None:
     assert (x * np.cos(tilt) + arm * np.sin(tilt) * np.sign(tilt[-1])) == pytest.approx(0.2 + RADIUS, abs=1e-9)
 
 
-def test_segments_that_lie_along_a_surface_are_said() -> None:
+def test_segments_that_lie_along_a_surface_are_refused_in_words() -> None:
     """Parallel capsules touch along a line; and what segments do not meet is refused."""
     model = two("capsule")
     q = model.neutral()

@@ -182,7 +182,7 @@ def agreeing_modes(model: sf.Model, q: Any, levels: Any) -> list[tuple[float, ..
     return found
 
 
-def test_the_modes_of_several_joints_are_the_one_set_that_agrees() -> None:
+def test_the_modes_of_several_joints_are_the_only_consistent_set() -> None:
     """Of all 3^4 sets, at random postures and levels; Gauss's principle leaves one acceleration."""
     rng, sizes = np.random.default_rng(5), set()
     for _ in range(6):

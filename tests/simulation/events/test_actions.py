@@ -219,9 +219,7 @@ def test_bodies_that_a_strike_leaves_at_rest_on_each_other(pull: float, method: 
 
 
 @pytest.mark.parametrize("failure", [LookupError("no such thing"), KeyboardInterrupt()])
-def test_what_a_check_raises_within_a_run_is_no_refusal(
-    failure: BaseException, monkeypatch: pytest.MonkeyPatch
-) -> None:
+def test_exceptions_of_a_check_within_a_run_are_raised(failure: BaseException, monkeypatch: pytest.MonkeyPatch) -> None:
     """It can't pass through C: the run ends there, and the exception is raised, or Ctrl-C said, behind it."""
     check, calls = BoundRun.check_changed, list[int]()
 
@@ -242,7 +240,7 @@ def test_what_a_check_raises_within_a_run_is_no_refusal(
     assert run.outcome.kind == "interrupted" and run.t[-1] == pytest.approx(0.305)
 
 
-def test_what_is_refused() -> None:
+def test_invalid_actions_are_refused_by_name() -> None:
     """With the event or the constraint by name: before a run where it is known, as its outcome where it happens."""
     model, q, v = docking()
 
@@ -304,7 +302,7 @@ def test_switches_are_kept_by_files(tmp_path: Any) -> None:
     assert "switches" not in repr(grabbing()) and hash(read) == hash(system)
 
 
-def test_what_an_impact_leaves_at_rest_has_no_energy_to_speak_of() -> None:
+def test_energy_of_rounding_after_an_impact_is_not_held_against_work() -> None:
     """All speed is taken: what still moves is rounding, whose energy is not held against work."""
     joints = [sf.Joint(name, "prismatic", axis=(1, 0, 0)) for name in ("x", "y")]
     bodies = [sf.RigidBody(joint.name, joint, sf.Inertia(k)) for k, joint in enumerate(joints, 2)]

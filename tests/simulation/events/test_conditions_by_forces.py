@@ -91,7 +91,7 @@ def test_an_input_that_jumps_breaks_the_latch_at_once() -> None:
     assert run.v[-1, 0] == pytest.approx(-(3.0 * _G + 50.0) / 3.0 * 0.5, abs=1e-9)
 
 
-def test_what_changes_the_motion_may_not_ask_for_forces() -> None:
+def test_laws_and_actions_may_not_ask_for_forces() -> None:
     """A law, an action; and names that are not there are said to be unknown."""
     model, event = held_arm(), sf.Event("t - 0.5", action={"strength": "lam.latch.z"})
     with pytest.raises(sf.UnknownNameError, match="'lam.latch.z' may not be used here"):

@@ -105,6 +105,6 @@ def test_a_sample_that_begins_at_zero_counts_from_there(
         ([0.0, 2.0, 1.0], [1.0, 2.0, 3.0], r"t\[1\] = 2, then 1.*\n.*\n.*sort the samples"),
     ],
 )
-def test_what_is_wrong_with_samples_is_named(t: list[float], values: list[Any], said: str) -> None:
+def test_faults_of_samples_are_named(t: list[float], values: list[Any], said: str) -> None:
     with pytest.raises(sf.ShapeError, match=said):
         sf.Signal(t, values)

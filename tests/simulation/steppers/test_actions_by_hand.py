@@ -97,7 +97,7 @@ def test_one_of_many_whose_action_fails_ends_alone() -> None:
     assert many.outcome(1).ok and steppers.running.tolist() == [False, True] and not many.events(1)
 
 
-def test_what_a_stepper_cannot_do_ends_its_motion() -> None:
+def test_impossible_actions_end_the_motion_of_a_stepper() -> None:
     """As it ends a run, in the same words."""
     model, q, v = docking()
     for action in ({"grip": 1}, {"grip": 0.5}, {"dq1": "1/grip"}):

@@ -31,7 +31,7 @@ def many(**options: Any) -> sf.Steppers:
 
 @pytest.mark.parametrize("made", [one, many])
 @pytest.mark.parametrize("name", ["q", "v", "t", "u", "par", "dt", "inputs", "model"])
-def test_what_steps_would_not_see_is_not_assigned(made: Any, name: str) -> None:
+def test_assignments_without_effect_on_steps_are_refused(made: Any, name: str) -> None:
     stepper = made()
     with pytest.raises(sf.SymofrosError, match=f"{name} is not assigned" + FOUR_PARTS):
         setattr(stepper, name, getattr(stepper, name))
@@ -173,7 +173,7 @@ def test_two_threads_lose_no_step_in_silence(method: str, steps: int) -> None:
     assert all("another thread" in error and "remedy:" in error for error in refused)
 
 
-def test_an_argument_that_step_has_not_is_not_told_by_a_private_name() -> None:
+def test_unknown_arguments_of_step_are_refused_without_a_private_name() -> None:
     stepper = one()
     with pytest.raises(TypeError, match=r"Stepper\.step\(\) got an unexpected keyword argument 'dt'"):
         stepper.step([1.0], dt=1e-2)  # type: ignore[call-arg]

@@ -45,7 +45,7 @@ def cubic(level: float, size: float, turn: float) -> Function:
 
 @pytest.mark.parametrize("h", [0.005, 0.05])
 @pytest.mark.parametrize("seed", range(4))
-def test_a_function_and_its_negative_are_searched_alike(seed: int, h: float) -> None:
+def test_a_function_and_its_negative_have_the_same_zeros(seed: int, h: float) -> None:
     """Falling as rising, near zero and far from it: the same zeros by the same evaluations."""
     rng = np.random.default_rng(seed)
     drawn = [(0.1, float(rng.uniform(-3.0, 3.0)), float(rng.uniform(-0.5, 1.5))) for _ in range(40)]

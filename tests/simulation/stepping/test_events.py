@@ -284,7 +284,7 @@ def test_formulas_of_time_lose_no_zero_and_bear_no_note(rotor: sf.Model, shape: 
             assert [one.t for one in stepper.events] == pytest.approx([one.t for one in run.events], abs=1e-9)
 
 
-def test_a_formula_of_the_state_that_jumps_is_not_said_to_turn_often(rotor: sf.Model) -> None:
+def test_a_formula_of_the_state_that_jumps_is_not_noted_as_turning_often(rotor: sf.Model) -> None:
     """Beside a point at which the events are looked at: a jump there is no fast change."""
     run = sf.simulate(rotor, [0.0], [1.0], 1.0, method="rk4", dt=0.1, events={"jump": "sign(a - 0.40000000000005)"})
     assert [one.t for one in run.events] == pytest.approx([0.4]) and not run.outcome.notes

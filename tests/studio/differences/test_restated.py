@@ -21,7 +21,7 @@ COORDINATES = ("coordinates",)
 @pytest.mark.parametrize("seed", range(3))
 @pytest.mark.parametrize("options", ["names", "frames", "zeros", "fuse", "names frames zeros fuse"])
 @pytest.mark.parametrize("robot", ["ur5", "panda", "go2", "icub"])
-def test_a_mechanism_that_is_stated_otherwise_is_the_same(robot: str, options: str, seed: int) -> None:
+def test_a_restated_mechanism_is_the_same(robot: str, options: str, seed: int) -> None:
     system = replace(read_original(robot), constraints=())  # Formulas name coordinates.
     asked = {name: name in options.split() for name in ("names", "frames", "zeros", "fuse")}
     found = sf.diff(system, restated(system, seed, **asked))
@@ -80,7 +80,7 @@ def test_signs_of_coordinates_are_seen_beyond_another_zero(offset: float, sign: 
     assert {name: way for name, _, way, _ in found.coordinates} == {"yaw": 1.0} | ({} if sign > 0 else {"pitch": -1.0})
 
 
-def test_what_changes_no_motion_is_called_so() -> None:
+def test_differences_that_change_no_motion_are_marked() -> None:
     """A body that turns about a vertical axis alone shows its moment about that axis, and nothing else."""
     one, two = pendulum(axis=(0, 0, 1)), pendulum(axis=(0, 0, 1))
     (body,) = two.bodies
@@ -166,7 +166,7 @@ def test_many_equal_bodies_take_bounded_work() -> None:
         sf.diff(sf.System("many", many), star("x"))
 
 
-def test_what_is_not_compared_is_noted(tmp_path: Path) -> None:
+def test_parts_that_are_not_compared_are_noted(tmp_path: Path) -> None:
     """Actuators, and couplings that a reader leaves out."""
     pytest.importorskip("mujoco")
     body = '<body><joint name="j"/><inertial pos="0 0 1" mass="1" diaginertia="1 1 1"/></body>'

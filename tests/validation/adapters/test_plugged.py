@@ -115,7 +115,7 @@ def test_an_engine_of_another_package_judges_a_model(tmp_path: Path) -> None:
     assert run.returncode == 1 and data["independent"] == 3
 
 
-def test_what_a_plug_in_does_wrong_harms_its_own_rows_alone(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_faults_of_a_plug_in_harm_its_own_rows_alone(monkeypatch: pytest.MonkeyPatch) -> None:
     plugins = PLUGINS | {"right": Plugin("right")}
     monkeypatch.setattr(Plugin, "kinds", {"revolute z": "hinge"})
     monkeypatch.setattr(plugged, "registry", lambda: Registry(dict(plugins)))

@@ -20,6 +20,6 @@ def test_meshes_must_converge_at_the_rate_that_they_are_extrapolated_by(power: i
     assert (row.error <= row.tolerance) == (status == "agree")
 
 
-def test_meshes_that_have_the_limit_show_no_rate() -> None:
+def test_converged_meshes_show_no_rate() -> None:
     row = judge_rates("beam", "engine", [Refined("mass", (4, 6, 8, 10), [np.array([1.0])] * 5)])
     assert row.status == "unsupported" and "to rounding" in row.note

@@ -69,7 +69,9 @@ def test_a_millionth_of_a_mass_shows_in_every_relation(relation: str, monkeypatc
     ("function", "relation"),
     [("mass_matrix", "asked again, in another order"), ("bias", "asked again, in another order")],
 )
-def test_what_depends_on_the_call_before_shows(function: str, relation: str, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_answers_that_depend_on_the_call_before_are_found(
+    function: str, relation: str, monkeypatch: pytest.MonkeyPatch
+) -> None:
     one = subject("motors")
     ours = interpreted.build(one)
     right: Callable[..., np.ndarray] = getattr(type(ours), function)

@@ -62,7 +62,7 @@ def test_its_rows_are_found_by_joint_loop_beam_format_and_engine(report: Report)
 _WORDS = ("closed loop", "beam", "ball", "URDF", "MJCF", "pinocchio")
 
 
-def test_what_a_model_has_is_only_said_of_the_description_that_was_compared() -> None:
+def test_features_of_a_model_are_those_of_the_compared_description() -> None:
     hashes = {model["model"]: model["hash"] for model in stored("check")["models"]}
     assert features_of({"four_bar": hashes["four_bar"]})["four_bar"].parts == ("1 closed loop",)
     assert features_of({"four_bar": "another", "unknown": ""}) == {}
@@ -79,7 +79,7 @@ def spoilt(folder: Path, **changes: Any) -> dict[str, Entry]:
     return gather(folder, {})
 
 
-def test_an_engine_that_disagrees_is_said_first_and_in_red(tmp_path: Path) -> None:
+def test_disagreeing_engines_come_first_and_in_red(tmp_path: Path) -> None:
     sound = trust(spoilt(tmp_path))
     assert sound.ok and "pinocchio" in rows_of(sound)["ur5"][1] and "not pinocchio" not in rows_of(sound)["ur5"][1]
     entries = spoilt(tmp_path, ok=False, error=0.5)

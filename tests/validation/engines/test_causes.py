@@ -53,7 +53,7 @@ def test_without_stated_causes_functions_that_are_red_on_the_same_trees_are_one(
     assert all(len(group.cells) == len(group.functions) * len(group.models) for group in groups)
 
 
-def test_what_no_stated_cause_explains_and_what_explains_nothing_are_said(data: dict[str, Any]) -> None:
+def test_unexplained_cells_and_idle_causes_are_listed(data: dict[str, Any]) -> None:
     row = {"gravity": {"ball": ["wrong", 0.5, 1e-12], "free": ["wrong", 0.5, 1e-12]}}
     aside = {"bias": {"ball": ["precondition", 0.5, 1e-12, "no balls (manual, p. 3): wrong by 5.0e-01"]}}
     engine = {"name": "toy", "version": "1", "conventions": [], "functions": {"gravity": "weight", "bias": "h"}}

@@ -148,7 +148,7 @@ def _same(x: float) -> float:
     return x + 1.0
 
 
-def test_what_objects_hold_is_followed_and_what_documents_them_is_not() -> None:
+def test_digests_follow_the_contents_of_objects_but_not_their_docstrings() -> None:
     def reached(*roots: Any) -> str:
         return digests.reached(*roots, packages=["tests"])
 

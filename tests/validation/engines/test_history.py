@@ -32,7 +32,7 @@ _ASSERTED = 'value, expected = {}, 2.0\nassert abs(value - expected) <= 1e-3, f"
         (Proof("1", "import os; os.abort()"), True),
     ],
 )
-def test_what_the_end_of_a_script_says_of_a_release(proof: Proof, said: bool | str) -> None:
+def test_the_end_of_a_script_classifies_a_release(proof: Proof, said: bool | str) -> None:
     assert proof.shown_by(Path(sys.executable)) == said
 
 
@@ -51,7 +51,7 @@ def test_causes_are_named_by_engine_and_name_and_have_scripts_in_the_report() ->
         proof_of(replace(cause, name="another"), data)
 
 
-def test_what_is_found_is_stored_and_nothing_else_changes(tmp_path: Path) -> None:
+def test_found_releases_are_stored_and_nothing_else_changes(tmp_path: Path) -> None:
     path = tmp_path / "dart.yaml"
     shutil.copy(FOLDER / "dart.yaml", path)
     before = read(path)

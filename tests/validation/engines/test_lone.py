@@ -33,7 +33,7 @@ def _at(tree: Tree, layout: Layout) -> tuple[Truth, Point]:
     return Truth(tree, layout), Point.of(random_state(tree, layout, SEED))
 
 
-def test_what_holds_a_wheel_is_its_torque_along_the_axis() -> None:
+def test_the_holding_torque_of_a_wheel_is_its_torque_along_the_axis() -> None:
     tree = SINGLE["wheel on a hinge"]
     truth, point = _at(tree, HINGE)
     with many_digits():

@@ -66,7 +66,7 @@ def test_constraints_of_models_that_are_made_again_are_right(name: str) -> None:
 
 
 @pytest.mark.parametrize(("tree", "asked_for", "given"), FAULTS)
-def test_what_leaves_a_part_out_is_a_red_cell(tree: Tree, asked_for: str, given: str) -> None:
+def test_an_answer_without_a_part_is_a_red_cell(tree: Tree, asked_for: str, given: str) -> None:
     found = _judged(tree, asked_for, given)
     want, answer = found[asked_for].want, found[given].answer
     assert want is not None and found[asked_for].cell.verdict == "right"
@@ -95,7 +95,7 @@ def test_an_anchor_that_stays_is_a_red_cell(function: str) -> None:
 
 
 @pytest.mark.parametrize("name", [name for name, tree in loops.trees().items() if tree.sensors])
-def test_what_holds_a_link_without_the_share_of_constraints_is_a_red_cell(name: str) -> None:
+def test_a_holding_wrench_without_the_share_of_constraints_is_a_red_cell(name: str) -> None:
     tree = loops.trees()[name]
     (one,) = _judged(tree, "wrench_sensors:bound").values()
     assert one.want is not None and one.cell.verdict == "right" and one.answer.state is not None
@@ -145,7 +145,7 @@ def test_a_part_of_the_drag_that_is_left_out_is_a_red_cell(medium: Medium) -> No
     assert judge("planted", tree, "passive_forces", answer, one.want).verdict == "wrong"
 
 
-def test_what_is_attached_is_not_attached_again() -> None:
+def test_attached_models_are_not_attached_again() -> None:
     tree = transformed.trees()["attached chain"]
     verdicts = {cell.function: cell.verdict for cell in cells(MUJOCO, tree)}
     assert verdicts["mass_matrix"] == "right"

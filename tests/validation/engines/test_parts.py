@@ -64,7 +64,7 @@ def models_of(report: Data, table: str = "cells") -> dict[str, list[str]]:
     return found
 
 
-def test_what_is_taken_over_answers_what_is_asked() -> None:
+def test_cells_taken_over_answer_the_present_questions() -> None:
     stored = part("mine", "ball", "free", "helical")
     (kept,) = parts.taken_over([stored], asked("mine ball", "mine helical") | {("mine", "free"): "another"})
     for table in ("cells", "identities", "asked"):
@@ -75,7 +75,7 @@ def test_what_is_taken_over_answers_what_is_asked() -> None:
     assert models_of(left) == {"mine": ["free"]} and left["proofs"] == []
 
 
-def test_of_two_parts_that_have_it_the_first_is_taken_and_of_one_that_does_not_say_what_it_answers_none() -> None:
+def test_cells_are_taken_from_the_first_part_and_none_from_parts_without_digests() -> None:
     one, two = part("mine", "ball"), part("mine", "ball", "free")
     kept = parts.taken_over([one, two], asked("mine ball", "mine free"))
     assert [parts.places(each) for each in kept] == [[("mine", "ball")], [("mine", "free")]]
@@ -132,7 +132,7 @@ def test_a_report_says_which_cells_are_of_which_commit() -> None:
     assert "Not asked anew: 3 pairs of an engine and a tree (a 2, b 1)" in shown({**own, "left": {"a": 2, "b": 1}})
 
 
-def test_what_is_no_report_is_refused(tmp_path: Path) -> None:
+def test_files_that_are_no_report_are_refused(tmp_path: Path) -> None:
     path = tmp_path / "stored.json"
     for text in (json.dumps({"cells": []}), "{", ""):
         path.write_text(text)

@@ -182,7 +182,7 @@ def test_a_planted_fault_is_a_red_cell(
     assert red.verdict == "wrong"
 
 
-def test_what_is_read_again_is_not_asked_of_mimicking_joints() -> None:
+def test_mimicking_joints_are_not_asked_to_be_read_again() -> None:
     """Pinocchio leaves what they follow unset, so that it crashes, or answers by chance."""
     plugin = OWN["pinocchio"]
     asked = {

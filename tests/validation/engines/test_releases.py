@@ -108,7 +108,7 @@ def test_crashes_at_one_question_are_counted_once(monkeypatch: pytest.MonkeyPatc
     assert process.crashes == CRASHES
 
 
-def test_a_release_that_is_not_there_is_said_in_words(asked: Opened) -> None:
+def test_a_missing_release_is_reported_in_words(asked: Opened) -> None:
     ((release, words),) = asked.failures.items()
     assert release.version == "9.0" and "install toy-engine==9.0" in words
 
@@ -140,7 +140,7 @@ def test_a_release_is_stated_by_the_name_of_a_plug_in_or_of_its_package() -> Non
     assert {"mujoco", "pin", "drake"} <= set(releases.newest()) and "symofros" not in releases.newest()
 
 
-def test_what_answers_in_a_release_imports_numpy_alone() -> None:
+def test_the_worker_in_a_release_imports_numpy_alone() -> None:
     """An engine's environment has nothing else of ours."""
     programs = ("numpy.random", "validation.engines.workers")
     listed = "print(*{name.partition('.')[0] for name in sys.modules})"

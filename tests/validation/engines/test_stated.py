@@ -89,7 +89,7 @@ def test_rates_of_angles_make_the_angular_velocity() -> None:
     np.testing.assert_allclose(_of("inertia_forces"), M @ _STATE.a, atol=1e-13)
 
 
-def test_what_the_last_link_carries_has_the_weight_that_its_height_says() -> None:
+def test_held_forces_of_the_last_link_are_slopes_of_its_potential_energy() -> None:
     """Held forces are slopes of the potential energy of what is carried."""
     size, at = 1e-6, np.array([0.25, -0.5, 0.125])
     g = digits(Truth(_ARM, _LAYOUT).value(lambda t, s: t.g(s.q), Point.of(_STATE)))

@@ -108,7 +108,7 @@ def test_the_script_of_a_state_is_a_proof(fault: str, monkeypatch: pytest.Monkey
         (Statement("repairs", "makes heavier", "manual", warned="heavier"), "at zero", "wrong"),
     ],
 )
-def test_what_an_engine_documents_explains_a_red_answer_and_hides_no_right_one(
+def test_documented_limits_explain_a_red_answer_and_hide_no_right_one(
     statement: Statement, fault: str, verdict: str, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     cell = asked(toy(fault, statements=(statement,)), monkeypatch).cell

@@ -54,7 +54,7 @@ def stored(**changes: Any) -> str:
         ("--update", True),
     ],
 )
-def test_what_asks_a_part_leaves_the_whole_report(
+def test_partial_runs_leave_the_whole_report(
     few: None, options: str, writes: bool, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     monkeypatch.setattr(study, "within_a_minute", lambda *_: [])

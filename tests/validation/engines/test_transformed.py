@@ -34,7 +34,7 @@ def test_engines_are_right_about_transformed_models(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", [name for name, tree in trees().items() if tree.attached and tree.forces])
-def test_what_acts_on_attached_models_is_right(name: str) -> None:
+def test_forces_on_attached_models_are_right(name: str) -> None:
     found = {cell.function: cell.verdict for cell in cells(OWN["mujoco"], trees()[name])}
     assert {"forward_dynamics", "step_forces_implicit"} <= set(found)
     assert {verdict for name, verdict in found.items() if not name.endswith((":attach", ":recompile"))} <= {

@@ -60,7 +60,7 @@ def test_an_installed_release_shows_its_fault(name: str) -> None:
     assert fault.is_right(printed(Path(sys.executable), fault.script)) == (version == fault.right)
 
 
-def test_a_script_without_a_number_is_said_in_words() -> None:
+def test_a_script_without_a_number_is_reported_in_words() -> None:
     with pytest.raises(NotAskedError, match="ModuleNotFoundError"):
         printed(Path(sys.executable), "import no_such_engine")
 

@@ -78,7 +78,7 @@ def named(folder: Path, *arguments: str) -> dict[str, Any]:
     return dict(json.loads((folder / "recall.json").read_text(encoding="utf-8")))
 
 
-def test_an_update_keeps_what_is_said_of_other_faults(report: Path) -> None:
+def test_an_update_keeps_the_rows_of_other_faults(report: Path) -> None:
     before = {row["name"]: row for row in named(report, NAME, OTHER, "--suite", SUITE % "colours")["faults"]}
     after = named(report, NAME, "--update", "--suite", SUITE % "colours")
     rows = {row["name"]: row for row in after["faults"]}

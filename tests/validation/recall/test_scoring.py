@@ -70,7 +70,7 @@ def test_a_hit_among_twenty_groups_is_half_a_hit() -> None:
     assert found.score == "half a hit" and "lost among" in found.why and found.groups[0].shows
 
 
-def test_what_an_engine_does_to_all_trees_of_a_group_is_called_too() -> None:
+def test_operations_on_all_trees_of_a_group_are_called() -> None:
     fault = replace(FAULT, subject=Subject(["appendModel"], []))
     trees = {"attached chain": Stated("appendModel"), "chain": Stated()}
 
@@ -132,7 +132,7 @@ def test_a_reader_is_seen_in_files_of_its_format_that_have_its_subject(
     assert score([Cell("toy", model, "bias", "wrong")], [], of_files).score == wanted
 
 
-def test_what_is_red_at_the_right_release_alone_is_a_false_alarm_unless_it_is_explained() -> None:
+def test_red_cells_of_the_right_release_alone_are_false_alarms_unless_explained() -> None:
     seen, alarm = cells(mass_matrix_inverse="wrong", bias="right"), cells(mass_matrix_inverse="right", bias="wrong")
     assert len(score(seen, alarm).alarms) == 1 and not score(seen, alarm, explained="known").alarms
     assert not score(cells(bias="refuses"), alarm).alarms, "the wrong release gave no answer to compare with"

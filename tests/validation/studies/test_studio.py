@@ -35,7 +35,7 @@ def test_the_dearer_of_two_records_of_a_session_counts() -> None:
     assert found["axe"] == {"looks": 2, "findings": []}
 
 
-def test_all_within_its_bars_is_good_and_shown() -> None:
+def test_findings_within_the_bars_are_good_and_shown() -> None:
     report = compose(data())
     assert report.ok and report.missed == ()
     values = {fact.label: fact.value for fact in report.facts}
@@ -54,7 +54,7 @@ def test_all_within_its_bars_is_good_and_shown() -> None:
         ("fails", lambda found: found["failed"].append("test_sessions.py::test_the_tour")),
     ],
 )
-def test_what_misses_its_bar_is_stated(what: str, change: Any) -> None:
+def test_misses_of_the_bar_are_stated(what: str, change: Any) -> None:
     found = data()
     change(found)
     report = compose(found)

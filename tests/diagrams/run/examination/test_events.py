@@ -131,7 +131,7 @@ def test_a_joint_creeps_under_the_load_that_an_event_has_set(load: float, creeps
 
 @pytest.mark.parametrize("record", [0.01, 0.1])
 @pytest.mark.parametrize(("t_end", "near"), [(1.1, True), (0.55, False)])
-def test_postures_are_looked_at_between_changes_of_constraints(record: float, t_end: float, near: bool) -> None:
+def test_postures_are_examined_between_changes_of_constraints(record: float, t_end: float, near: bool) -> None:
     """A parallelogram is held for 0.5 s; let go at its speed, it passes its singular posture."""
     stated = MODELS["parallelogram"]
     locked = sf.System(

@@ -65,7 +65,7 @@ SYMPLECTIC: dict[str, Any] = {"method": "semi_implicit_euler"}
         ("walls", 20.0, {"method": "rk4", "dt": 0.01}, False),
     ],
 )
-def test_what_is_wrong_by_a_tenth_bears_a_note_and_what_is_right_none(
+def test_runs_off_by_a_tenth_bear_a_note_and_right_ones_do_not(
     law: str, t_end: float, options: dict[str, Any], wrong: bool
 ) -> None:
     """Against tolerances of 1e-11."""
@@ -86,7 +86,7 @@ def test_what_is_wrong_by_a_tenth_bears_a_note_and_what_is_right_none(
         ({"method": "dopri5", "rtol": 1e-2}, 0.5, [1]),
     ],
 )
-def test_what_a_right_run_costs(
+def test_the_examination_of_a_right_run_is_bounded(
     options: dict[str, Any], record: float, made: list[int], monkeypatch: pytest.MonkeyPatch
 ) -> None:
     """The whole is made once more one time at most."""
@@ -102,7 +102,7 @@ def test_what_a_right_run_costs(
     assert asked == made and not run.outcome.notes and len(run.events["plant"]) > 1
 
 
-def test_what_answers_to_the_motion_is_not_held_as_a_whole(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_runs_with_python_functions_are_not_examined_as_a_whole(monkeypatch: pytest.MonkeyPatch) -> None:
     """A function of Python's is not called again, and blocks that are interpreted are slow."""
     parts, change = list[Part](), Examined.change
 

@@ -52,7 +52,7 @@ def test_inlets_that_no_state_shows_are_noted(compiled: bool) -> None:
     assert note == "block 'u': output 'value' is inf at t = 0 s, and the run goes on"
 
 
-def test_many_records_are_looked_at_in_turn() -> None:
+def test_many_records_are_searched_in_portions() -> None:
     """The first that is not finite lies in a later portion of them."""
     (note,) = rooted(None).run(1.0, dt=1e-2, record=1e-4).outcome.notes
     assert note == "block 'root': output 'y' is nan at t = 0.5001 s, and the run goes on"

@@ -15,7 +15,7 @@ WAYS = pytest.mark.parametrize("way", ["run", "interpret"])
 
 @WAYS
 @pytest.mark.parametrize(("load", "creeps"), [(0.5, True), (3.0, False)])
-def test_joints_beside_them_that_creep_are_said(load: float, creeps: bool, way: str) -> None:
+def test_creeping_joints_beside_prescribed_ones_are_noted(load: float, creeps: bool, way: str) -> None:
     lift = sf.RigidBody("lift", sf.Joint("z", "prismatic", axis=(0, 0, 1), prescribed=True), sf.Inertia(1.0))
     rubs = sf.Friction(1.0, minimum_velocity=1e-2)
     block = sf.Joint("y", "prismatic", "lift", axis=(0, 1, 0), elements=(rubs,))
@@ -28,7 +28,7 @@ def test_joints_beside_them_that_creep_are_said(load: float, creeps: bool, way: 
 
 @WAYS
 @pytest.mark.parametrize("rod", [1.0, 0.3 / np.sqrt(1.0 - (NEAR / 2.0) ** 2)])
-def test_singular_postures_that_they_drive_to_are_said(rod: float, way: str) -> None:
+def test_singular_postures_reached_by_prescribed_joints_are_noted(rod: float, way: str) -> None:
     """A crank of 0.3 m turns past the upright, where det G = rod cos(its angle) is least."""
     a, rate = 0.3, 2.0
     turn = sf.Joint("q1", "revolute", axis=(0, -1, 0), prescribed=True)

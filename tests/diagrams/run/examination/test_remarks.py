@@ -185,7 +185,7 @@ def test_long_runs_without_a_comparison_to_finer_steps_are_reported(method: str,
 
 
 @pytest.mark.parametrize("record", [0.01, 0.1])
-def test_a_singular_posture_that_is_passed_is_told_as_of_the_model_alone(record: float) -> None:
+def test_a_passed_singular_posture_is_noted_as_for_the_model_alone(record: float) -> None:
     """Between records that are far apart the motion is made once more; off such a posture nothing is said."""
     model = compiled("parallelogram")
     first = sf.assemble(model, GUESSES["parallelogram"], np.full(model.nv, 3.0))

@@ -120,7 +120,7 @@ def test_rank_lost_along_the_ground_falls_back_to_full_matrices(pair: tuple[sf.M
     np.testing.assert_allclose(a, expected, rtol=1e-5, atol=1e-5 * np.abs(expected).max())
 
 
-def test_states_off_the_constraints_are_projected_alike(
+def test_sparse_and_dense_projections_agree_off_the_constraints(
     pair: tuple[sf.Model, sf.Model], rng: np.random.Generator
 ) -> None:
     sparse, full = pair

@@ -88,7 +88,7 @@ def test_batches_take_one_of_either_for_all() -> None:
         ({"tooth": sf.Target(np.zeros((4, 3)))}, None, "no frame 'tooth'"),
     ],
 )
-def test_what_is_no_batch_is_refused(targets: Any, q: Any, says: str) -> None:
+def test_arrays_that_are_no_batch_are_refused(targets: Any, q: Any, says: str) -> None:
     with pytest.raises(sf.SymofrosError, match=says):
         sf.inverse_kinematics_batch(arm(), targets, q)
 
@@ -146,7 +146,7 @@ def test_interpreted_models_are_searched_by_the_same_steps() -> None:
     same(sf.inverse_kinematics_batch(models[1], target, [[0.2, -0.4, 1.0]] * 2, threads=2), [other] * 2)
 
 
-def test_what_an_interpreted_function_raises_ends_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_exceptions_of_interpreted_functions_end_the_search(monkeypatch: pytest.MonkeyPatch) -> None:
     """Ctrl-C among them."""
     m = sf.compile(sf.System("arm", (*links((1.0, 0.8)),)), sf.Options(FUNCTIONS.functions, backend="interpreter"))
     target, kind = {"b1.end": sf.Target([0.3, -1.4, 0.0])}, type(m.kernel("frame_jacobian", "b1.end"))

@@ -197,7 +197,7 @@ def test_exceeded_speed_and_effort_limits_are_reported(limits: dict[str, float],
         assert len(told) == bool(said) and all(said in note for note in told), told
 
 
-def test_speeds_are_looked_at_in_diagrams() -> None:
+def test_speeds_in_diagrams_are_held_against_limits() -> None:
     diagram = moving(driven(velocity=1.0, effort=1.0), u="force.y")
     diagram.add(blocks.Constant(name="force", value=[5.0]))
     for run in (sf.Simulation(diagram).run, sf.Simulation(diagram).interpret):

@@ -59,7 +59,7 @@ def test_angles_end_within_half_a_turn_of_the_guess_where_limits_let_them(
 
 
 @pytest.mark.parametrize("side", [1.0, -1.0, None])
-def test_of_drawn_starts_solutions_that_are_refused_are_none(side: float | None) -> None:
+def test_refused_solutions_of_drawn_starts_do_not_count(side: float | None) -> None:
     """An arm with an elbow to either side; None: nothing is refused."""
     task = Task(arm(), {"l2.end": sf.Target([1.2, 0.0, 0.4])}, None, None)
     solver, guess = task.solver, np.array([0.1, 0.2, 0.3])

@@ -47,7 +47,7 @@ def test_a_condition_is_violated_by_a_tenth_of_its_terms(sideways: float, said: 
     assert found is None or (found.t == 1.0 and found.share > 0.1)
 
 
-def test_rows_are_looked_at_where_constraints_may_have_ended_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_rows_are_examined_where_constraints_may_have_ended_a_run(monkeypatch: pytest.MonkeyPatch) -> None:
     """Of no run that has come to its end, and of none that ended for another reason."""
     ends = "ENERGY_LOST DIVERGED SINGULAR STEP_TOO_SMALL NO_CONVERGENCE PROJECTION_FAILED RUNNING".split()
     monkeypatch.setattr(constraint_faults, "jump_ahead", lambda *_: "seen")

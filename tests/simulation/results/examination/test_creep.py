@@ -56,7 +56,7 @@ def test_friction_levels_off_at_the_same_speed_whatever_its_unit(force: float) -
 
 
 @pytest.mark.parametrize("first", [2e-4, 1.2e-3, 1.6e-3, 1.7e-3])
-def test_friction_reaches_its_peak_from_whichever_speed_on_it_is_looked_at(first: float) -> None:
+def test_friction_reaches_its_peak_from_any_first_speed(first: float) -> None:
     """The peak is beyond the speed at which the force levels off, which may be the first beside the present one."""
     m = sf.compile(
         slide(sf.Friction(1.0, 1.2, minimum_velocity=1e-3)), sf.Options(("dynamics",), backend="interpreter")

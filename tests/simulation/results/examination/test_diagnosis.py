@@ -138,7 +138,7 @@ def test_quaternions_that_prescribe_a_motion_are_of_unit_length(method: str, kin
     assert sf.simulate(model, [0.3], u={"p.qw": -1.0}, t_end=0.03, dt=0.01, method=method).outcome.ok
 
 
-def test_steps_that_shrink_to_nothing_are_said_where_a_run_is_cut() -> None:
+def test_vanishing_steps_are_noted_where_a_run_is_cut() -> None:
     """A fall to the centre of a force without bound, cut early and beside the centre; advice for the latter alone."""
     joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), effort=("-1/x^2",))
     system = sf.System("s", (sf.RigidBody("b", joint, sf.Inertia(1.0)),), gravity=(0, 0, 0))
@@ -167,7 +167,7 @@ def hopper() -> sf.Model:
     ("method", "dt", "events"),
     [("rk4", 0.05, 0), ("rk4", 0.03373327929362365, 1), ("generalized_alpha", 0.022758682638032345, 1)],
 )
-def test_steps_that_are_too_long_are_not_said_to_be_a_singular_posture(method: str, dt: float, events: int) -> None:
+def test_steps_that_are_too_long_are_no_singular_posture(method: str, dt: float, events: int) -> None:
     """What bends a beam until its second-order mass matrix is singular, over events as well; shorter steps go on."""
     model, start = hopper(), [1.0, 0.8, 0.0, 0.0]
     run = sf.simulate(model, start, method=method, dt=dt, beam_limit=math.inf)
@@ -179,7 +179,7 @@ def test_steps_that_are_too_long_are_not_said_to_be_a_singular_posture(method: s
     assert sf.simulate(model, start, t_end=run.outcome.t + dt, dt=dt / 8, beam_limit=math.inf).outcome.ok
 
 
-def test_what_shorter_steps_do_not_pass_stays_singular(monkeypatch: pytest.MonkeyPatch) -> None:
+def test_postures_that_shorter_steps_do_not_pass_stay_singular(monkeypatch: pytest.MonkeyPatch) -> None:
     """They have to go on for two steps beyond where the run ends."""
     asked = list[tuple[float, float]]()
 

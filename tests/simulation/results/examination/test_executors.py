@@ -134,7 +134,7 @@ def test_every_executor_notes_what_a_single_run_notes(name: str, executor: str) 
 
 
 @pytest.mark.parametrize("executor", ["single", "last state", "each step", "by hand"])
-def test_ranks_that_were_met_are_said_with_their_numbers(executor: str) -> None:
+def test_notes_on_ranks_have_their_numbers(executor: str) -> None:
     """It begins in the singular posture. A diagram, which closes its start itself, begins another motion there."""
     start = made("regular")._replace(q=[0.0] * 4, v=[1.0, -1.0, 1.0, 1.0], t_end=0.05)
     (note,) = EXECUTORS[executor](start).notes

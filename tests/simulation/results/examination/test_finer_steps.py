@@ -127,7 +127,7 @@ def test_changes_that_add_up_are_followed_until_it_is_clear_what_they_come_to(to
 
 
 @pytest.mark.parametrize(("share", "parts"), [(2.4e-6, 0), (2.6e-6, 1), (0.05, 3)])
-def test_what_grows_less_than_linearly_is_followed_as_if_it_were_linear(share: float, parts: int) -> None:
+def test_changes_that_grow_less_than_linearly_are_extrapolated_linearly(share: float, parts: int) -> None:
     """A part that is shorter than a period may show less; with the square of time it may come to a tenth, (17b)."""
     run = Held(5000, lambda n, _: share)
     assert run.may_add_up_to(Changed(share, START, 25)) == pytest.approx(share * 200.0**2)

@@ -43,7 +43,7 @@ def test_resolved_pulses_get_no_note(pulse: sf.Model, method: str) -> None:
 
 
 @pytest.mark.parametrize("method", FIXED)
-def test_what_a_step_makes_of_a_force_that_grows_with_time_is_known(method: str) -> None:
+def test_the_error_of_a_step_under_a_force_that_grows_with_time_is_known(method: str) -> None:
     """Methods of first order take its value at one end of the step, h/2 from the middle; others miss nothing."""
     model, h, slope = sf.compile(cart("1 + width*t")), 0.1, 3.0
     model = model.with_parameters(width=slope)

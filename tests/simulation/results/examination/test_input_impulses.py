@@ -168,7 +168,7 @@ def test_quadrature_nodes_integrate_as_steps_of_the_method_do(name: str) -> None
         assert abs(run.v[-1, 0] - by_nodes) < 1e-12
 
 
-def test_the_sharpest_samples_are_looked_at() -> None:
+def test_the_sharpest_samples_are_examined() -> None:
     """Of more than can be looked at, those that change most, in the order of time; none that goes on as before."""
     rng = np.random.default_rng(0)
     t, changes = np.arange(5.0 * _MOST), rng.standard_normal(5 * _MOST)

@@ -27,9 +27,7 @@ def ends(seed: int) -> np.ndarray:
 
 
 @given(seed=st.integers(0, 10**6), step=st.integers(0, 7), at=st.floats(0.05, 0.95), apart=st.floats(1e-6, 0.9))
-def test_two_instants_of_a_step_are_looked_at_as_one_part_and_each_alone(
-    seed: int, step: int, at: float, apart: float
-) -> None:
+def test_two_instants_of_a_step_are_examined_together_and_singly(seed: int, step: int, at: float, apart: float) -> None:
     """Alone where they are farther apart than nearby: from the end of the step that is nearer."""
     t, other = ends(seed), min(at + apart, 0.99)
     places = np.array([at, other])
@@ -80,7 +78,7 @@ def test_parts_that_follow_upon_each_other_leave_out_their_sum() -> None:
 
 @pytest.mark.parametrize("t0", [-40.0, 0.0, 1e3])
 @pytest.mark.parametrize("force", [2.5, -2.5])
-def test_what_a_path_leaves_out_of_a_part_is_a_force_times_its_length(t0: float, force: float) -> None:
+def test_the_omission_of_a_path_is_a_force_times_its_length(t0: float, force: float) -> None:
     """Whatever the date; by the largest sum on the way, of a force that turns round half way."""
     for turns, share in ((False, 1.0), (True, 0.5)):
 

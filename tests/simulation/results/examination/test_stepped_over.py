@@ -192,7 +192,7 @@ def test_speeds_are_compared_by_their_kinetic_energy(name: str, rng: np.random.G
 
 
 @pytest.mark.parametrize("stabilisation", ["projection", "baumgarte", "none"])
-def test_what_is_made_once_more_is_the_run(stabilisation: Any) -> None:
+def test_repeated_spans_equal_the_run(stabilisation: Any) -> None:
     """To the bit, from any record on, the constraints kept as the run keeps them."""
     model = compiled("four_bar")
     start = sf.assemble(model, [1.2, -1.2, 1.2], [2.0, 0.0, 0.0])

@@ -53,7 +53,7 @@ def test_nor_does_it_in_a_diagram(how: str) -> None:
         assert any("1500 rad/s" in note for note in run.outcome.notes) == noted
 
 
-def test_modes_of_a_state_are_looked_at_by_changes_of_its_size() -> None:
+def test_modes_of_a_state_are_judged_by_changes_of_its_size() -> None:
     """A spring that slips is bent by 2 mm at most: bent by a metre, as far as a speed changes, it would seem stiff."""
     joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=(sf.Hysteresis(1e3, 2.0),), actuated=True)
     model = sf.compile(sf.System("slips", (sf.RigidBody("body", joint, sf.Inertia(1.0)),), gravity=(0, 0, 0)))

@@ -108,7 +108,7 @@ def off(run: sf.Trajectory, right: sf.Trajectory, par: Any) -> float:
 
 
 @pytest.mark.parametrize("kind", [*EVENTS, "contact"])
-def test_what_is_wrong_by_a_tenth_bears_a_note_and_what_is_right_none(kind: str) -> None:
+def test_runs_off_by_a_tenth_bear_a_note_and_right_ones_do_not(kind: str) -> None:
     """Random motions, methods and steps; against tolerances of 1e-12."""
     rng = np.random.default_rng(len(kind))
     judged = 0
@@ -142,7 +142,7 @@ def box_over_floor() -> sf.Model:
     return sf.compile(sf.System("fall", (x, z, box), connections=(ground,)))
 
 
-def test_what_contacts_make_of_errors_is_stated() -> None:
+def test_amplification_of_errors_by_contacts_is_noted() -> None:
     """Windows of a long run do not see what contacts amplify: 40 % at the end, without a word; right runs are quiet."""
     model, start = box_over_floor(), ([0.0, 0.3, 0.6], [0.5, 0.0, 1.0], 1.2)
     right, run, finer = (sf.simulate(model, *start, **one) for one in (FINE, {"dt": 4e-3}, {"dt": 2e-4}))
@@ -207,7 +207,7 @@ def test_notes_do_not_depend_on_when_a_run_begins(method: str) -> None:
     ("method", "order"),
     [("euler", 1), ("semi_implicit_euler", 1), ("generalized_alpha", 2), ("variational", 2), ("rk4", 4), ("dopri5", 5)],
 )
-def test_events_take_no_order_from_a_method(method: str, order: int) -> None:
+def test_events_do_not_lower_the_order_of_a_method(method: str, order: int) -> None:
     model, q, v, given = relay()
     given["t_end"] = 1.0
     right = sf.simulate(model, q, v, **given, **FINE)
@@ -237,7 +237,9 @@ def mass_between_walls() -> tuple[sf.Model, dict[str, Any]]:
         ({"method": "dopri5", "rtol": 1e-3}, [1]),
     ],
 )
-def test_what_a_right_run_costs(options: dict[str, Any], made: list[int], monkeypatch: pytest.MonkeyPatch) -> None:
+def test_the_examination_of_a_right_run_is_bounded(
+    options: dict[str, Any], made: list[int], monkeypatch: pytest.MonkeyPatch
+) -> None:
     """It is made once more one time: short ones by half the step, longer ones by four times the step."""
     model, given = mass_between_walls()
     asked, fine = list[int](), SwitchedRun.fine

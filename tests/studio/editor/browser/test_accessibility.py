@@ -123,7 +123,7 @@ def test_small_windows_cut_nothing_off(
     look()
 
 
-def test_what_a_job_does_fits_a_phone(arm: Server, page: Page) -> None:
+def test_the_progress_of_a_job_fits_a_phone(arm: Server, page: Page) -> None:
     page.set_viewport_size({"width": 375, "height": 667})
     page.route("**/api/jobs/*", lambda route: None)  # Its end is not answered.
     steps.run(page, "Compile")

@@ -127,7 +127,7 @@ def test_a_diagram_without_anything_to_draw_is_a_diagram(text: str) -> None:
     assert drawn(text).diagram == {"nodes": [], "wires": [], "models": {}, "moving": []}
 
 
-def test_an_open_input_that_a_step_is_taken_of_is_told() -> None:
+def test_step_responses_of_open_inputs_are_refused() -> None:
     """What is not connected is no number, of which a step would have none either."""
     integrator = "{kind: integrator, period: 0.01, reset: rising, unit_in: m, inputs: {u: a.y}}"
     text = CHAIN + f"  d: {integrator}\n  e: {{kind: gain, gain: 2, inputs: {{u: d.y}}}}\n"

@@ -91,7 +91,9 @@ def test_models_go_with_the_blocks_that_name_them(tmp_path: Path) -> None:
         (["blocks/twice"], "wires: {both.u2: thrice.y}\n", "wires of its own"),
     ],
 )
-def test_what_cannot_be_grouped_is_refused_in_words(tmp_path: Path, chosen: list[str], more: str, says: str) -> None:
+def test_blocks_that_cannot_be_grouped_are_refused_in_words(
+    tmp_path: Path, chosen: list[str], more: str, says: str
+) -> None:
     session = session_of(tmp_path, TEXT + more)
     with pytest.raises(EditError, match=says):
         session.group({"revision": session.document.revision, "name": "part", "blocks": chosen})

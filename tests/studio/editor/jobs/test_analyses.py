@@ -59,7 +59,7 @@ def test_a_pendulum_rests_and_swings_as_its_formula_says() -> None:
     assert B["q"] == [0.0] and B["dq"] == [pytest.approx(1 / (0.5 * L**2))]
 
 
-def test_what_is_held_needs_an_effort_and_the_pose_itself_can_be_asked_about() -> None:
+def test_held_coordinates_need_an_effort_and_the_posture_itself_can_be_analysed() -> None:
     level = analysed(what="equilibrium", held=["q"])
     torque = -0.5 * G * L
     assert rows(level, "Efforts")["q"] == rows(level, "Inputs")["q"] == [pytest.approx(torque)]
@@ -85,7 +85,7 @@ def test_a_displacement_is_drawn_as_a_share_of_the_mechanism() -> None:
     assert q.max() - q.min() == pytest.approx(2 * SHARE * L, rel=1e-6)
 
 
-def test_what_cannot_be_analysed_is_refused() -> None:
+def test_invalid_analyses_are_refused() -> None:
     refused: list[tuple[dict[str, Any], str]] = [
         ({"what": "horoscope"}, "no analysis"),
         ({"what": "equilibrium", "held": ["z"]}, "z"),

@@ -45,7 +45,7 @@ def test_motions_over_a_parameter_are_curves_and_motions_of_their_own() -> None:
     assert speed[5] == pytest.approx(G / (2 * L) * t[5], rel=1e-3)
 
 
-def test_sweeps_of_what_is_no_run_time_parameter_are_refused() -> None:
+def test_sweeps_need_run_time_parameters() -> None:
     for text in (PENDULUM, PENDULUM.replace("l: 0.4", "l: {value: 0.4, constant: true}")):
         with pytest.raises(SymofrosError, match="no parameter"):
             analysed(text, what="sweep", parameter="k" if text == PENDULUM else "l", low=1, high=2)

@@ -285,7 +285,7 @@ def test_the_page_is_kept_apart_and_its_address_has_a_token_of_its_own(client: T
     assert wrong["state"] == "failed" and "cvode" in wrong["error"]["object"]
 
 
-def test_a_frame_is_dragged_and_pages_are_told_where_it_leads() -> None:
+def test_a_frame_is_dragged_and_pages_get_the_posture() -> None:
     """The loop stays closed, all of it moves; an unknown frame is refused."""
     told: list[tuple[str, Json]] = []
     view = DocumentViewer(lambda kind, data: told.append((kind, data)))

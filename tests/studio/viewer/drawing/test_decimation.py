@@ -95,7 +95,7 @@ def test_open_edges_keep_their_corners() -> None:
 
 
 @pytest.mark.parametrize("faces", [[[0, 1, 2]], [[0, 1, 2], [0, 1, 2]], [[0, 1, 2], [1, 0, 3], [0, 1, 4]], [[0, 1, 1]]])
-def test_what_is_no_surface_stays(faces: list[list[int]]) -> None:
+def test_meshes_without_a_surface_stay(faces: list[list[int]]) -> None:
     mesh = Mesh(np.random.default_rng(3).normal(size=(5, 3)), np.array(faces))
     after = decimated(mesh, 10.0)
     np.testing.assert_array_equal(after.vertices[after.faces], mesh.vertices[mesh.faces])

@@ -78,7 +78,7 @@ def test_pictures_that_are_large_when_unpacked_are_not_read(tmp_path: Path, monk
     assert RED not in colors_of(written(tmp_path))
 
 
-def test_what_a_mesh_refers_to_is_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+def test_files_that_a_mesh_refers_to_are_bounded(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     (tmp_path / "a.mtl").write_text("x" * 60)
     monkeypatch.setattr(mesh_colors, "MAX_BYTES", 100)
     beside = FilesBeside(tmp_path)
@@ -116,7 +116,7 @@ def test_the_picture_of_a_description_goes_before_those_of_the_file(tmp_path: Pa
 
 
 @pytest.mark.parametrize("content", [b"", b"\x89PNG\r\n\x1a\n" + bytes(40), b"text", None])
-def test_what_is_no_picture_leaves_the_color(content: bytes | None, tmp_path: Path) -> None:
+def test_invalid_pictures_leave_the_color(content: bytes | None, tmp_path: Path) -> None:
     file = tmp_path / "picture.png"
     if content is None:  # Too many pixels.
         Image.new("1", (mesh_colors.MAX_PIXELS // 1000, 1001)).save(file)

@@ -48,7 +48,7 @@ def test_corners_stay_where_they_are() -> None:
 
 
 @pytest.mark.parametrize("count", [10, 100_000])
-def test_so_many_points_are_thinned(count: int) -> None:
+def test_long_tracks_are_thinned(count: int) -> None:
     t = np.linspace(0.0, 400 * np.pi, count)
     circles = np.stack([np.cos(t), np.sin(t), 0 * t], axis=1)
     places = vertices(circles)

@@ -15,7 +15,7 @@ SLIDE = (
 )
 
 
-def test_what_the_parser_writes_is_kept_and_later_lines_are_written(capfd: pytest.CaptureFixture[str]) -> None:
+def test_messages_of_the_parser_are_kept_and_later_lines_are_written(capfd: pytest.CaptureFixture[str]) -> None:
     with pytest.raises(ValueError, match="valid URDF"), parser_messages() as said:
         pin.buildModelFromXML(SLIDE)
     assert "upper value (inf)" in said[0]

@@ -88,7 +88,7 @@ def test_a_link_that_turns_alone_carries_the_inertia_that_its_force_takes() -> N
         assert J[k][:, k] @ whole @ J[k][:, k] == pytest.approx(M[k, k])
 
 
-def test_what_holds_a_link_has_the_force_that_drives_its_joint() -> None:
+def test_holding_wrenches_contain_the_force_that_drives_the_joint() -> None:
     """Along the axis of a joint without armature, at any speed; at rest it is what it is without speeds."""
     J, held = _of("jacobian_local"), _of("joint_wrenches_driven")
     axial = [J[k][3:, k] @ held[k][3:] for k in range(_N)]
@@ -134,7 +134,7 @@ def test_energies_and_rates() -> None:
     assert _of("squared_distance")[0] == pytest.approx(_STATE.v2 @ _STATE.v2)
 
 
-def test_what_the_first_link_sees() -> None:
+def test_poses_and_velocities_are_relative_to_the_first_link() -> None:
     poses = _of("link_poses")
     A, x = poses[0, 3:].reshape(3, 3), poses[0, :3]
     for pose, seen in zip(poses, _of("relative_poses"), strict=True):

@@ -17,7 +17,7 @@ from validation.pareto.race import race
 
 
 @pytest.mark.parametrize("name", sampled(("arm", "four_bar", "andrews", "walls"), ["four_bar"]))
-def test_references_agree_and_sides_move_alike(name: str) -> None:
+def test_references_agree_and_sides_give_the_same_motion(name: str) -> None:
     problem = PROBLEMS[name]
     found = race(problem, quick=True)
     assert found.agreement <= problem.trust

@@ -100,7 +100,7 @@ def test_a_wrench_without_the_share_of_the_joint_is_a_red_cell(name: str) -> Non
 @pytest.mark.parametrize(
     "name", ["sensors on hinges that a tendon pulls", "sensors on hinges that a tendon over points pulls"]
 )
-def test_what_holds_a_link_makes_up_for_a_tendon_between_links(name: str) -> None:
+def test_holding_wrenches_balance_a_tendon_between_links(name: str) -> None:
     tree = SENSED[name]
     (wanted,), (bare,) = (
         _judged("mujoco", one, "wrench_sensors").values() for one in (tree, replace(tree, tendons=()))
@@ -110,7 +110,7 @@ def test_what_holds_a_link_makes_up_for_a_tendon_between_links(name: str) -> Non
     assert judge("planted", tree, "wrench_sensors", answer, wanted.want).verdict == "wrong"
 
 
-def test_what_holds_a_link_that_a_tendon_wraps_around_is_refused() -> None:
+def test_holding_wrenches_of_links_in_wrapped_tendons_are_refused() -> None:
     wrapped = next(one for one in acting.passive().values() if any(tendon.wraps for tendon in one.tendons))
     tree = replace(wrapped, sensors=(End(wrapped.links[0].name),))
     (cell,) = cells(OWN["mujoco"], tree, ("wrench_sensors",))
@@ -146,7 +146,7 @@ def test_a_step_that_leaves_a_part_out_is_a_red_cell(engine: str, name: str, ask
 
 
 @pytest.mark.parametrize("name", [name for name in TREES if name.startswith("affine gains") and "limits" not in name])
-def test_what_is_taken_at_the_end_of_a_step_is_the_derivative_of_forces(name: str) -> None:
+def test_implicit_terms_of_a_step_are_the_derivative_of_forces(name: str) -> None:
     truth, s = _truth(TREES[name])
 
     def excess(t: Truth, s: Point) -> Exact:
@@ -161,7 +161,7 @@ CONTROLLED = ["affine gains", "muscles", "actuators clamped at their joints", "a
 
 
 @pytest.mark.parametrize("name", [*CONTROLLED, "actuators disabled", "actuators on tendons"])
-def test_what_controls_make_is_the_difference_of_forces(name: str) -> None:
+def test_the_effect_of_controls_is_the_difference_of_forces(name: str) -> None:
     tree = TREES[name]
 
     def moved(number: int, by: float) -> Tree:
@@ -227,7 +227,7 @@ def test_moment_arms_are_the_derivatives_of_lengths(name: str) -> None:
 
 
 @pytest.mark.parametrize("name", ["springs and dampers on hinges and a slide", "tendon over points", "tendon of a sum"])
-def test_what_springs_store_is_what_their_forces_take(name: str) -> None:
+def test_energy_of_springs_is_the_work_against_their_forces(name: str) -> None:
     truth, s = _truth(TREES[name])
 
     def excess(t: Truth, s: Point) -> Exact:

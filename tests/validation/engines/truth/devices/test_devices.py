@@ -82,7 +82,7 @@ def test_models_of_one_set_of_options_are_put_together() -> None:
     assert all(len(lot) == 1 for lot in lots if "<flag" in lot[0])
 
 
-def test_what_a_release_does_not_know_leaves_the_others_together() -> None:
+def test_unknown_devices_of_a_release_leave_the_others_together() -> None:
     mujoco = pytest.importorskip("mujoco")
     made: dict[str, object] = {"mj": mujoco}
     exec(together("springs and dampers", GROUPS["springs and dampers"]), made)

@@ -157,7 +157,7 @@ def test_a_bushing_takes_energy_by_its_dampers_alone() -> None:
     assert 1e-6 * moment @ [0.3, -0.4, 0.5] == pytest.approx(work, rel=1e-5)
 
 
-def test_what_is_locked_moves_with_what_carries_it() -> None:
+def test_locked_bodies_move_with_their_carrier() -> None:
     after = _of(parameters.locked)
     x, y, _ = parameters.MASSES
     assert after[3] == pytest.approx(_STATE.a[0] + STEP * _STATE.tau[0] / (x + y), rel=1e-14)
@@ -172,7 +172,7 @@ def test_what_is_locked_moves_with_what_carries_it() -> None:
         ("convex_hull_of_mesh", _of(bodies.mesh(bodies.DENTED)).tolist()),
     ],
 )
-def test_what_releases_had_wrong_is_red(name: str, answer: list[float]) -> None:
+def test_faults_of_past_releases_are_red(name: str, answer: list[float]) -> None:
     """A servo that stays where it is, a rotor that is left out, the mesh in place of its hull."""
     want = expected(name, _TREE, _LAYOUT, _STATE)
     assert judge("planted", _TREE, name, np.array(answer), want).verdict == "wrong"
