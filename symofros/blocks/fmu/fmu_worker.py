@@ -5,8 +5,8 @@ It imports nothing else of this package. Each line that it reads is a task in JS
     {"describe": file}                    what the unit states of itself, without running anything of it
     {"load": file, "folder", "kind", "rtol"}
                                           unpack it into a new folder, instantiate it: "co_simulation", "model_exchange"
-    {"begin": t, "set": [[name, values]], "inputs": [names], "outputs": [names]}
-                                          initialise it at a time, and give its outputs
+    {"begin": t, "step", "set": [[name, values]], "inputs": [names], "outputs": [names], "values": values | null}
+                                          initialise it at a time, with inputs if they are known, and give its outputs
     {"to": t, "before": values | null, "after": values | null}
                                           move it to a time with some inputs, set others there, and give its outputs
 
@@ -30,6 +30,7 @@ MAX_VARIABLES = 100_000
 MAX_LOG = 1000  # Characters of the unit's last messages.
 MAX_ITERATIONS = 1000  # Of the discrete states at one event, and of events between two samples.
 MAX_SOLVER_STEPS = 1_000_000
+ROUNDING = 1e-6  # Of a communication step, by differences of times.
 
 NUMERIC = {
     **dict.fromkeys(("Real", "Float32", "Float64"), float),
@@ -180,17 +181,20 @@ class Unit:
 
     # Time.
 
-    def begin(self, t: float, given: list[Any], inputs: list[Any], outputs: list[Any]) -> None:
+    def begin(self, task: dict[str, Any]) -> None:
         """Initialise it at a time."""
-        self._inputs, self._outputs, self.t = inputs, outputs, t
+        self._inputs, self._outputs, self._step = task["inputs"], task["outputs"], task["step"]
+        t = self.t = task["begin"]
         if not self._third:
             self.fmu.setupExperiment(tolerance=self._rtol, startTime=t)
-        for name, values in given:
+        for name, values in task["set"]:
             self.set(name, values)
         if self._third:
             self.fmu.enterInitializationMode(tolerance=self._rtol, startTime=t)
         else:
             self.fmu.enterInitializationMode()
+        if task["values"] is not None:
+            self.apply(task["values"])  # What the unit samples as it is initialised.
         self.fmu.exitInitializationMode()
         if self._exchanged:
             self._begin_exchange()
@@ -232,14 +236,17 @@ class Unit:
         """Move it to a time, with its inputs as they are."""
         if t <= self.t:
             return
+        step = t - self.t
+        if abs(step - self._step) < ROUNDING * self._step:
+            step = self._step  # Units that count steps of their own would lose one by the rounding of a difference.
         if self._exchanged:
             self._integrate(t)
         elif self._third:
-            _, ends, _, last = self.fmu.doStep(self.t, t - self.t)
+            _, ends, _, last = self.fmu.doStep(self.t, step)
             if ends:
                 raise Fault(f"the unit ends the simulation at t = {last:.9g} s")
         else:
-            self.fmu.doStep(self.t, t - self.t)
+            self.fmu.doStep(self.t, step)
         self.t = t
 
     def _integrate(self, end: float) -> None:
@@ -296,7 +303,8 @@ class Session:
             raise Fault("no unit is loaded")
         try:
             if "begin" in task:
-                unit.begin(task["begin"], task["set"], task["inputs"], task["outputs"])
+                unit.begin(task)
+                self._applied = task["values"]
             else:
                 self._set(unit, task["before"])
                 unit.move(task["to"])

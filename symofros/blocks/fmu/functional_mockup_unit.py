@@ -173,8 +173,9 @@ class _RunningUnit(Running):
             given, taken = (
                 [(v.name, v.size) for one in ports for v in one.variables] for ports in (self._given, self._taken)
             )
-            task = {"begin": t, "set": self._starts, "inputs": given, "outputs": taken}
-            answer = self._ask(task, _LOADING, t)
+            first = entries if self._through else None
+            task = {"begin": t, "step": self._block.period, "set": self._starts, "inputs": given, "outputs": taken}
+            answer = self._ask({**task, "values": first}, _LOADING, t)
             self._begun = True
         if self._through or not answer:
             before, after = (None, entries) if self._through else (entries, None)

@@ -242,17 +242,16 @@ class StateMachine(Block):
         active = [float(name == enter) for name in self.machine_states]
         after = {"active": context.numbers(active), "entered": context.t, "began": context.numbers(1.0)}
         present = self._present(context) if leave else context.memory
-        there = replace(context, memory={**context.memory, **present})
-        bindings = {
-            "exit": self._bindings(there, self._elapsed(context)),
-            "entry": self._bindings(there, context.numbers(0.0)),
-        }
-        for output in self.outputs:
-            value = present[_kept(output)]
-            for name, when in ((leave, "exit"), (enter, "entry")):
-                if (name, when, output) in self._actions:
-                    value = self._value(context, self._actions[name, when, output], bindings[when])
-            after[_kept(output)] = value
+        kept, elapsed = {**context.memory, **present}, self._elapsed(context)
+        for name, when in ((leave, "exit"), (enter, "entry")):
+            bindings = self._bindings(replace(context, memory=kept), elapsed)
+            kept = kept | {
+                _kept(output): self._value(context, self._actions[name, when, output], bindings)
+                for output in self.outputs
+                if (name, when, output) in self._actions
+            }
+            elapsed = context.numbers(0.0)
+        after.update((_kept(output), kept[_kept(output)]) for output in self.outputs)
         return after
 
     def _next(self, context: EvaluationContext) -> dict[str, Tensor]:
@@ -268,17 +267,19 @@ class StateMachine(Block):
         after = {"active": joined([item.reshape(1) for item in active]), "samples": samples}
         after["began"] = context.numbers(1.0)
         period = float(self.period or 0.0)
-        here = self._bindings(context, samples * period)
-        there = self._bindings(context, (memory["samples"] + 1.0) * period)
-        stages = (("exit", left, there), ("during", active, here), ("entry", entered, here))
-        for output in self.outputs:
-            value = memory[_kept(output)]
-            for when, holds, bindings in stages:
+        known, stages = dict(context.memory), (("exit", left), ("during", active), ("entry", entered))
+        for when, holds in stages:
+            elapsed = (memory["samples"] + 1.0) * period if when == "exit" else samples * period
+            bindings = self._bindings(replace(context, memory=known), elapsed)
+            for output in self.outputs:
+                value = after.get(_kept(output), memory[_kept(output)])
                 for name, now in zip(names, holds, strict=True):
                     if (name, when, output) in self._actions:
                         assigned = self._value(context, self._actions[name, when, output], bindings)
                         value = now * assigned + (1.0 - now) * value
-            after[_kept(output)] = value
+                after[_kept(output)] = value
+            if when == "exit":  # What it assigns is there when the next state is entered.
+                known |= {_kept(output): after[_kept(output)] for output in self.outputs}
         return after
 
     def _taken(self, context: EvaluationContext) -> Iterator[tuple[Transition, Tensor]]:

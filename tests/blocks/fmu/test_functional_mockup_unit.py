@@ -108,6 +108,37 @@ def test_ports_are_the_variables_of_the_unit(wilful: str) -> None:
         sf.Simulation(diagram)
 
 
+def test_communication_steps_are_the_period(wilful: str) -> None:
+    """Differences of times are not, to the last bit: a unit that counts steps of its own lost some of them."""
+    diagram = sf.Diagram("counted")
+    diagram.add(blocks.FMU(name="unit", file=wilful, period=0.01, allow_native=True))
+    counts = sf.Simulation(diagram).run(1.0, record=0.01)["unit.milliseconds"]
+    assert counts.tolist() == [10.0 * k for k in range(101)]
+
+
+def test_a_unit_is_initialised_with_its_inputs(wilful: str) -> None:
+    """It was with their starts; without feedthrough those of the first sample are not known then."""
+    for through, first in ((True, 0.25), (False, 0.0)):
+        diagram = fed(wilful, 0.25, 0.5, 0.75, allow_native=True, feedthrough=through)
+        assert sf.Simulation(diagram).run(0.2, record=0.1)["unit.first"].tolist() == [first] * 3
+
+
+@pytest.mark.parametrize("version", ["fmu2", "fmu3"])
+def test_a_sampled_controller_reads_inputs_of_the_communication_before(version: str, tmp_path: Path) -> None:
+    """But the first, which it is initialised with: samples at the end of a step lie within it."""
+    held = sf.Diagram("held")
+    held.add(blocks.Hold(name="hold", period=0.02))
+    held.add_inlet("u", "hold.u", shape=())
+    held.outlets = {"y": "hold.y"}
+    file = str(sf.export(held, version, tmp_path).files[0])  # type: ignore[arg-type]
+    for period, late in ((0.02, 1), (0.01, 2)):
+        diagram = sf.Diagram("late")
+        diagram.add(blocks.Formula(name="wish", formulas={"y": "3 + t"}))
+        diagram.add(blocks.FMU(name="unit", file=file, period=period, allow_native=True), u="wish.y")
+        run = sf.Simulation(diagram).run(0.1, dt=0.01, record=0.02)
+        assert np.allclose(run["unit.y"], [3.0, *(run["wish.y"][1:] - 0.02 / late)], atol=1e-12)
+
+
 @pytest.mark.parametrize(
     ("wish", "words"),
     [

@@ -1,11 +1,13 @@
-/* A unit of FMI 2 that does what its input says: 0 passes it on, 1 crashes, 2 hangs, 3 fails, 4 prints, 5 ends. */
+/* A unit of FMI 2 that does what its input says: 0 passes it on, 1 crashes, 2 hangs, 3 fails, 4 prints, 5 ends.
+
+   It counts whole milliseconds of each communication step, and keeps the input that it was initialised with. */
 #include <stdio.h>
 #include <stdlib.h>
 
 #include "fmi2FunctionTypes.h"
 
 typedef struct {
-    double u;
+    double u, first, milliseconds;
     const fmi2CallbackFunctions *callbacks;
 } unit;
 
@@ -27,7 +29,13 @@ fmi2Status fmi2SetupExperiment(fmi2Component c, fmi2Boolean a, fmi2Real b, fmi2R
 }
 
 fmi2Status fmi2EnterInitializationMode(fmi2Component c) { (void)c; return fmi2OK; }
-fmi2Status fmi2ExitInitializationMode(fmi2Component c) { (void)c; return fmi2OK; }
+
+fmi2Status fmi2ExitInitializationMode(fmi2Component c)
+{
+    unit *one = c;
+    one->first = one->u;
+    return fmi2OK;
+}
 
 fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, const fmi2Real values[])
 {
@@ -38,14 +46,17 @@ fmi2Status fmi2SetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n,
 
 fmi2Status fmi2GetReal(fmi2Component c, const fmi2ValueReference vr[], size_t n, fmi2Real values[])
 {
-    for (size_t i = 0; i < n; i++) values[i] = vr[i] == 1 ? ((unit *)c)->u : 0.5;
+    const unit *one = c;
+    const double outputs[] = {0.0, one->u, 0.5, one->first, one->milliseconds};
+    for (size_t i = 0; i < n; i++) values[i] = outputs[vr[i]];
     return fmi2OK;
 }
 
 fmi2Status fmi2DoStep(fmi2Component c, fmi2Real t, fmi2Real h, fmi2Boolean last)
 {
-    const unit *one = c;
-    (void)t, (void)h, (void)last;
+    unit *one = c;
+    (void)t, (void)last;
+    one->milliseconds += (int)(h / 1e-3);
     if (one->u == 1.0) abort();
     for (volatile int i = 0; one->u == 2.0; i++) { }
     if (one->u == 3.0) {

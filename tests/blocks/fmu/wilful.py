@@ -21,8 +21,16 @@ _STATED = """<?xml version="1.0" encoding="UTF-8"?>
     <ScalarVariable name="fixed" valueReference="2" causality="parameter" variability="fixed" initial="exact">
       <Real start="0.5"/>
     </ScalarVariable>
+    <ScalarVariable name="first" valueReference="3" causality="output" variability="continuous">
+      <Real/>
+    </ScalarVariable>
+    <ScalarVariable name="milliseconds" valueReference="4" causality="output" variability="discrete">
+      <Real/>
+    </ScalarVariable>
   </ModelVariables>
-  <ModelStructure><Outputs><Unknown index="2"/></Outputs></ModelStructure>
+  <ModelStructure>
+    <Outputs><Unknown index="2"/><Unknown index="4"/><Unknown index="5"/></Outputs>
+  </ModelStructure>
 </fmiModelDescription>
 """
 

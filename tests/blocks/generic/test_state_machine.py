@@ -48,6 +48,7 @@ def by_hand(u: np.ndarray, x: np.ndarray) -> dict[str, list[float]]:
         went = state == "" or bool(ways)
         if ways:
             values |= {name: value(formula, entered) for name, formula in STATES[state].exit.items()}
+            known.update(values)
         if went:
             state, entered = ways[0].enter if ways else "idle", k
         values |= {name: value(formula, entered) for name, formula in STATES[state].during.items()}
@@ -170,6 +171,18 @@ def test_a_continuous_machine_changes_where_its_conditions_become_true(constants
     ):
         row = [float(run[f"m.{name}"][at[t]]) for name in ("state", "y", "n", "z", "k")]
         np.testing.assert_allclose(row, [state, y, n, z, k], atol=1e-10, err_msg=f"t = {t}")
+
+
+def test_a_state_is_entered_with_what_the_exit_before_assigned() -> None:
+    """Both count: 10 at each exit and 1 at each entry; a counter that both changed lost what the exit added."""
+    states = {
+        "a": MachineState(exit={"n": "n + 10"}),
+        "b": MachineState(entry={"n": "n + 1"}, exit={"n": "2*n"}),
+        "c": MachineState(entry={"n": "n + 1"}),
+    }
+    ways = Transition("a", "b", "u-0.5"), Transition("b", "c", "0-u"), Transition("c", "a", "elapsed - 5")
+    assert continuous(*ways, states=states, outputs={"n": 0.0})["m.n"][-1] == 23.0
+    assert continuous(*ways, states=states, outputs={"n": 0.0}, period=0.01)["m.n"][-1] == 23.0
 
 
 def test_conditions_that_hold_as_a_state_is_entered_are_met_there() -> None:
