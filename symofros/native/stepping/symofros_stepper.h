@@ -224,7 +224,7 @@ typedef struct sym_system {
     int32_t events_of_reactions;   /* 1: events read accelerations or multipliers, which are evaluated with them */
 } sym_system;
 
-typedef enum sym_event_sizes { SYM_EVENT_NODES = 5, SYM_EVENT_EARLIER = 11, SYM_EVENT_ROWS = 19 } sym_event_sizes;
+typedef enum sym_event_sizes { SYM_EVENT_NODES = 5, SYM_EVENT_EARLIER = 11, SYM_EVENT_UNSURE = 18, SYM_EVENT_ROWS = 22 } sym_event_sizes;
 
 /* Events along one step (docs/theory/simulation.md, section 2), sought between x = 0, its start, and x = 1, its end. */
 typedef struct sym_event_search {
@@ -232,7 +232,9 @@ typedef struct sym_event_search {
     const int32_t *direction;     /* (n) 1 rising, -1 falling, 0 both */
     int32_t (*evaluate)(void *data, double x, double *values); /* values of all events (n) at x; returns 0 or a status */
     void *data;
-    double *memory; /* (SYM_EVENT_ROWS, n): values at the end of the step before; row SYM_EVENT_EARLIER, at its start or NaN */
+    /* (SYM_EVENT_ROWS, n): values at the end of the step before; row SYM_EVENT_EARLIER, at its start or NaN; row SYM_EVENT_UNSURE,
+     * changes that are rounding. */
+    double *memory;
     int32_t short_step;           /* whether events far from zero need no look within the step */
     double longest;               /* interval between two points at which an event is looked at */
     double h;                     /* length of the step [s] */

@@ -32,6 +32,7 @@ typedef struct sym_event_rows { /* (n) each, in sym_event_search.memory */
     double *earlier;               /* values at the start of the step before; NaN: they are unknown */
     double *rate[SYM_EVENT_NODES]; /* by x, at the nodes; below 0 where it turns seldom */
     double *pace;                  /* the largest rate by time where it was looked at last */
+    double *rounding;              /* changes up to this are rounding, whatever the largest value is */
 } sym_event_rows;
 
 static sym_event_rows sym_rows_of_search(const sym_event_search *s) {
@@ -44,7 +45,7 @@ static sym_event_rows sym_rows_of_search(const sym_event_search *s) {
     rows.past = row + 3 * n, rows.past_value = row + 4 * n, rows.size = row + 5 * n;
     rows.earlier = row + (SYM_EVENT_EARLIER - SYM_EVENT_NODES) * n;
     for (k = 0; k < SYM_EVENT_NODES; ++k) rows.rate[k] = rows.earlier + (size_t)(1 + k) * n;
-    rows.pace = rows.earlier + (size_t)(1 + SYM_EVENT_NODES) * n;
+    rows.pace = rows.earlier + (size_t)(1 + SYM_EVENT_NODES) * n, rows.rounding = s->memory + SYM_EVENT_UNSURE * n;
     return rows;
 }
 
@@ -137,7 +138,7 @@ static double sym_longest_interval(const sym_event_walk *w, double x) {
 /* Whether the event has between a and b no zeros but the one that a change of sign shows. Its curve departs from the chord
  * by an eighth of `departure` at most, (4a), if it is as smooth as the points about it look; then it is monotonic, (4b), or
  * stays away from zero, (4c). */
-static int32_t sym_hides_nothing(const sym_event_walk *w, double size) {
+static int32_t sym_hides_nothing(const sym_event_walk *w, double size, double rounding) {
     const sym_event_point a = w->a, b = w->behind[w->n - 1];
     const double length = b.x - a.x;
     sym_event_point p[4];
@@ -149,14 +150,15 @@ static int32_t sym_hides_nothing(const sym_event_walk *w, double size) {
     if (n < 3) return 1;
     bend = sym_bend(p[0], p[1], p[2]), other = n > 3 ? sym_bend(p[1], p[2], p[3]) : bend;
     departure = 2.0 * ((fabs(bend) > fabs(other) ? fabs(bend) : fabs(other)) + fabs(other - bend)) * length * length;
-    if (departure <= SYM_EVENT_ROUNDING * size) return 1;
+    if (departure <= fmax(rounding, SYM_EVENT_ROUNDING * size)) return 1;
     if (a.f == 0.0 || b.f == 0.0 || (a.f > 0.0) != (b.f > 0.0)) return fabs(b.f - a.f) >= 2.0 * departure;
     return fabs(a.f) > departure && fabs(b.f) > departure;
 }
 
 /* Halve the interval until it hides nothing. Returns 0 or a status. */
 static int32_t sym_shorten_interval(sym_event_search *s, sym_event_walk *w, double size) {
-    while (!sym_hides_nothing(w, size)) {
+    const double rounding = sym_rows_of_search(s).rounding[w->event];
+    while (!sym_hides_nothing(w, size, rounding)) {
         const double length = w->behind[w->n - 1].x - w->a.x;
         sym_event_point m;
         int32_t status;
@@ -202,12 +204,17 @@ static int32_t sym_is_smooth(const sym_event_rows *rows, int32_t i, int32_t firs
     return fabs(sym_bend(p[1], p[2], p[3]) - sym_bend(p[0], p[1], p[2])) * length * length <= 27.0 * SYM_EVENT_SMOOTH * largest;
 }
 
+/* Rate of event i by its values at two points that are so far apart. */
+static double sym_rate_between(const sym_event_rows *rows, int32_t i, double first, double last, double apart) {
+    return fabs(last - first) <= rows->rounding[i] ? 0.0 : (last - first) / apart;
+}
+
 /* Rates of all events at a node <- by their values beside it. Returns 0 or a status. */
 static int32_t sym_look_beside(const sym_event_search *s, const sym_event_rows *rows, int32_t k) {
     const double beside = k + 1 < SYM_EVENT_NODES ? SYM_EVENT_BESIDE : -SYM_EVENT_BESIDE;
     const int32_t status = s->evaluate(s->data, sym_event_nodes[k] + beside, rows->work);
     int32_t i;
-    for (i = 0; i < s->n; ++i) rows->rate[k][i] = (rows->work[i] - rows->node[k][i]) / beside;
+    for (i = 0; i < s->n; ++i) rows->rate[k][i] = sym_rate_between(rows, i, rows->node[k][i], rows->work[i], beside);
     return status;
 }
 
@@ -242,7 +249,7 @@ static int32_t sym_look_farther(const sym_event_search *s, const sym_event_rows 
     status = s->evaluate(s->data, x, rows->past_value);
     if (status == 0) status = s->evaluate(s->data, x + side * SYM_EVENT_BESIDE, rows->work);
     for (i = 0; i < s->n; ++i) {
-        const double rate = (rows->work[i] - rows->past_value[i]) / (side * SYM_EVENT_BESIDE), seen = fabs(rows->rate[k][i]);
+        const double rate = sym_rate_between(rows, i, rows->past_value[i], rows->work[i], side * SYM_EVENT_BESIDE), seen = fabs(rows->rate[k][i]);
         if (seen * followed > SYM_EVENT_PACE * rows->size[i] && fabs(rate) < seen) rows->rate[k][i] = rate;
         rows->past_value[i] = 0.0;
     }

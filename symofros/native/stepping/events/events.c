@@ -90,28 +90,32 @@ static int32_t sym_restart_events(sym_run *r) {
 /* Errors of a state by rounding. */
 #define SYM_EVENT_STATE_ROUNDING 1e-14
 
+/* errors (n) += what errors of the entries of y at x, their signs alternating after so many of them, change of all events, which have
+ * the values (n) there. Returns 0 or a status. */
+static int32_t sym_add_errors_of_events(sym_event_step *step, double x, double rtol, double atol, int32_t alike, const double *values, double *errors) {
+    sym_run *r = step->run;
+    sym_workspace *w = step->memory;
+    double *moved = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events;
+    int32_t l, status = sym_dense_output(r, w, step->h, step->dense_ready, x, w->stage);
+    if (status != 0) return status;
+    sym_state_magnitudes(r, w->magnitude);
+    for (l = 0; l < 2 * r->system->nv; ++l) w->stage[l] += (l / abs(alike) % 2 == (alike > 0) ? -1.0 : 1.0) * (atol + rtol * w->magnitude[l]);
+    sym_load_chart_state(r, r->t + x * step->h, w->stage);
+    status = sym_event_values(r, moved);
+    for (l = 0; l < r->system->n_events; ++l) errors[l] += fabs(moved[l] - values[l]);
+    return status;
+}
+
 /* Whether event i is at x no farther from zero than errors of the entries of y may move it, their signs alternating one way
  * or the other. Returns 0 or a status. */
 static int32_t sym_event_is_at_zero(sym_event_step *step, int32_t i, double x, double rtol, double atol, int32_t *is) {
-    sym_run *r = step->run;
-    sym_workspace *w = step->memory;
-    double value, error = 0.0, *values = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events;
-    int32_t way, l, status = sym_event_values_within_step(step, x, values);
-    if (status != 0) return status;
-    value = values[i];
-    sym_state_magnitudes(r, w->magnitude);
-    for (way = -1; way <= 1; way += 2) {
-        int32_t sign = way;
-        status = sym_dense_output(r, w, step->h, step->dense_ready, x, w->stage);
-        if (status != 0) return status;
-        for (l = 0; l < 2 * r->system->nv; ++l, sign = -sign) w->stage[l] += sign * (atol + rtol * w->magnitude[l]);
-        sym_load_chart_state(r, r->t + x * step->h, w->stage);
-        status = sym_event_values(r, values);
-        if (status != 0) return status;
-        error += fabs(values[i] - value);
-    }
-    *is = fabs(value) <= error;
-    return 0;
+    const int32_t n = step->run->system->n_events;
+    double *values = step->run->event_values + (SYM_EVENT_ROWS - 2) * n, *errors = step->run->event_values + (SYM_EVENT_ROWS - 3) * n;
+    int32_t way, status = sym_event_values_within_step(step, x, values);
+    memset(errors, 0, (size_t)n * sizeof *errors);
+    for (way = -1; way <= 1 && status == 0; way += 2) status = sym_add_errors_of_events(step, x, rtol, atol, way, values, errors);
+    *is = fabs(values[i]) <= errors[i];
+    return status;
 }
 
 /* The event at which the first mode of a ball ends: after those of friction that sticks. */
@@ -120,6 +124,28 @@ static int32_t sym_first_contact_event(const sym_run *r) { return r->actions->fi
 /* Whether event i is of a rigid contact that has been settled where the step begins. */
 static int sym_settled_now(const sym_run *r, int32_t i) {
     return r->system->n_contacts > 0 && i >= sym_first_contact_event(r) && r->acted_at[i] >= r->t;
+}
+
+/* Whether event i is zero where the step begins, as its bodies touch there since an impact or the choice of modes. */
+static int sym_begins_at_zero(const sym_run *r, int32_t i) {
+    return r->actions != NULL && (sym_settled_now(r, i) || (r->actions->restitution[i] == 0.0 && r->acted_at[i] == r->t));
+}
+
+/* Changes that are rounding, of events that are zero where the step begins, for the search: near to zero they have no digits, so
+ * that their largest value in the step is no measure of it. Returns 0 or a status. */
+static int32_t sym_measure_rounding(sym_event_step *step) {
+    const sym_run *r = step->run;
+    const int32_t n = r->system->n_events;
+    double *rounding = r->event_values + SYM_EVENT_UNSURE * n, *values = r->event_values + (SYM_EVENT_ROWS - 2) * n;
+    int32_t i, alike, some = 0, status;
+    for (i = 0; i < n; ++i) some |= sym_begins_at_zero(r, i), rounding[i] = 0.0;
+    if (!some) return 0;
+    status = sym_event_values_within_step(step, 0.0, values);
+    for (alike = 1; alike < 4 * r->system->nv && status == 0; alike *= 2) /* entries that cancel with some signs do not with others */
+        status = sym_add_errors_of_events(step, 0.0, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, alike, values, rounding);
+    for (i = 0; i < n; ++i)
+        if (!sym_begins_at_zero(r, i)) rounding[i] = 0.0;
+    return status;
 }
 
 /* Share of a step after which a ball that rises from its surface is above it by more than rounding. */
@@ -133,13 +159,12 @@ static int32_t sym_event_is_rounding(sym_event_step *step, int32_t i, double x, 
     const sym_run *r = step->run;
     const double end = r->event_values[(SYM_EVENT_NODES - 1) * r->system->n_events + i];
     double *values = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events, behind[2] = {x + SYM_EVENT_RISES, fmax(2.0 * x, SYM_EVENT_RESOLUTION)};
-    const int settled = r->actions != NULL && sym_settled_now(r, i);
     int32_t status, k, is, stays = 1;
     *past = 0.0;
-    if (r->actions == NULL || (!settled && (r->actions->restitution[i] != 0.0 || r->acted_at[i] != r->t))) return 0;
+    if (!sym_begins_at_zero(r, i)) return 0;
     status = sym_event_is_at_zero(step, i, 0.5 * x, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, &is);
     if (status != 0 || !is) return status;
-    if (settled && end < 0.0) status = sym_event_is_at_zero(step, i, 1.0, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, &stays);
+    if (sym_settled_now(r, i) && end < 0.0) status = sym_event_is_at_zero(step, i, 1.0, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, &stays);
     if (stays) *past = behind[1];
     for (k = 0; k < 2 && !stays && status == 0; ++k) {
         if (!(behind[k] < 1.0 && behind[k] > *past)) continue;
@@ -203,7 +228,8 @@ static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *
     search.evaluate = sym_event_values_within_step, search.data = &step;
     search.n_instants = s->n_event_instants, search.instants = s->event_instants;
     search.start_changes = !s->events_free_of_inputs && s->nu > 0;
-    status = sym_event_search_begin(&search);
+    status = sym_measure_rounding(&step);
+    if (status == 0) status = sym_event_search_begin(&search);
     while (status == 0) {
         double x, past;
         int32_t which;

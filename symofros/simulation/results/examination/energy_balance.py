@@ -18,8 +18,8 @@ from symofros.simulation.results.examination.run import ExaminedRun
 # A power is a difference over this share of a step, or of the time in which the largest speed arises where that is
 # shorter; but not shorter than this share of that.
 _MOMENT, _SHORTEST = 1e-3, 1e-60
-# Difference of two energies, over their parts, that is rounding: no power.
-_ROUNDING = 1e-15
+# Difference of two energies, over their parts, that is rounding: no power; of those of states so many times that.
+_ROUNDING, _SUMS = 1e-15, 16.0
 # Growth of speeds that no mechanism explains.
 EXPLODED = 1e6
 # Kinetic energy, over the first, up to which growth is held against the work of forces.
@@ -49,13 +49,15 @@ def energy_note(run: ExaminedRun) -> str:
         cure = f"{'a smaller dt' if not run.settings.adaptive else 'tighter tolerances'}, or another method"
         if not np.isfinite(energy).all():  # States beyond 1e100 have ended the run: it is a mass that is immense.
             return "energy overflows, although the states do not, and is not judged: units in which it is smaller"
+        change, largest = float(np.abs(energy - energy[0]).max()), float(kinetic.max())
+        if not change > _SUMS * _ROUNDING * np.abs(energy).max():
+            return ""
         gain = float(energy.max() - energy[0])
         if gain > 0.5 * kinetic.max() and not _acts(run):
             first = max(_first_energy(run, few), 1e-300)
             growth = math.sqrt(float(kinetic.max()) / first)
             if growth > EXPLODED and not _driven(run, energies, first):
                 return f"speeds grow {growth:.3g}-fold and energy by {gain:.3g} J although no input acts: {cure}"
-        change, largest = float(np.abs(energy - energy[0]).max()), float(kinetic.max())
         # At rest, as after an impact that takes all speed, only rounding moves.
         if not change > _NOTED_CHANGE * largest > 0.5 * _NOTED_CHANGE * run.rounding(states) ** 2:
             return ""

@@ -60,13 +60,14 @@ class Stretch(NamedTuple):
     missed: float
 
 
-def passed_over(run: ExaminedRun, ends: States, least: float) -> tuple[int, float, float]:
+def passed_over(run: ExaminedRun, ends: States, least: float, size: float) -> tuple[int, float, float]:
     """Number of a step, length of the steps that show what it passes over [s], and the change by these; 0: none does.
 
     Args:
         run: The run.
         ends: Ends of steps.
-        least: Change of speeds, as a share of the fastest, that counts.
+        least: Change of speeds, as a share of `size`, that counts.
+        size: Speed of the motion, in the norm of the kinetic energy.
     """
     stepper, (t, _, _, u) = run.stepper, ends
     steps = np.arange(len(t) - 1)
@@ -96,8 +97,8 @@ def passed_over(run: ExaminedRun, ends: States, least: float) -> tuple[int, floa
         return 0, 0.0, 0.0
     stretches = _stretches(t, parts, missed, whole=not run.settings.adaptive)
     for stretch in sorted(stretches, key=lambda one: -one.missed)[:_PROVED]:
-        if stretch.missed > _DOUBTED * least * run.fastest:
-            length, change = _proved(run, ends, stretch, least)
+        if stretch.missed > _DOUBTED * least * size:
+            length, change = _proved(run, ends, stretch, least, size)
             if change > least:
                 return stretch.first, length, change
     return 0, 0.0, 0.0
@@ -156,14 +157,14 @@ def _missed(run: ExaminedRun, path: Cubics, part: NarrowPart) -> float:
     return float(np.nan_to_num(run.norms(q, found[1], changes)).max())
 
 
-def _proved(run: ExaminedRun, ends: States, stretch: Stretch, least: float) -> tuple[float, float]:
+def _proved(run: ExaminedRun, ends: States, stretch: Stretch, least: float, size: float) -> tuple[float, float]:
     """Length of steps [s] within a stretch and the change that they show, as do steps of twice the length.
 
     The least if none do; 0 where no steps come to its end.
     """
     shown, share = [math.inf], 1.0
     for _ in range(1 + _HALVINGS):
-        change = _change(run, ends, stretch, share)
+        change = _change(run, ends, stretch, share, size)
         if change is None:
             break
         shown.append(change)
@@ -174,7 +175,7 @@ def _proved(run: ExaminedRun, ends: States, stretch: Stretch, least: float) -> t
     return share * stretch.length, least_of_two if math.isfinite(least_of_two) else 0.0
 
 
-def _change(run: ExaminedRun, ends: States, stretch: Stretch, share: float) -> float | None:
+def _change(run: ExaminedRun, ends: States, stretch: Stretch, share: float, size: float) -> float | None:
     """Change of speed at the end of the last step by short steps from the begin of the first, over the fastest speed.
 
     Args:
@@ -182,6 +183,7 @@ def _change(run: ExaminedRun, ends: States, stretch: Stretch, share: float) -> f
         ends: Ends of steps: t (n), q, v, u.
         stretch: Where short steps have its length; before and after it they are parts of the run's own.
         share: Share of these lengths that is taken.
+        size: Speed of the motion, in the norm of the kinetic energy.
 
     Returns:
         None where they do not come to the end.
@@ -202,4 +204,4 @@ def _change(run: ExaminedRun, ends: States, stretch: Stretch, share: float) -> f
             return None
     q, v, u = (x[-1:] for x in finer[1:])
     change, fastest = (float(run.norms(q, u, x)[0]) for x in (v - ends[2][last], v))
-    return change / max(run.fastest, fastest, 1e-300)
+    return change / max(size, fastest, 1e-300)

@@ -65,15 +65,14 @@ def tolerance_note(run: ExaminedRun) -> str:
     settings, (t, q, v, u) = run.settings, run.states
     if not settings.adaptive or not run.model.nv or run.stepper.method.family.multistep or run.steps < 1:
         return ""
-    inertia = run.inertia
-    if settings.atol * inertia <= _ALLOWED * run.fastest:  # Some records are enough to tell.
+    if run.allowed <= _ALLOWED * run.fastest:  # Some records are enough to tell.
         return ""
     moved, largest = float(np.abs(q - run.start[0]).max()), float(run.norms(q, u, v).max())
-    if not (settings.atol * inertia > _ALLOWED * largest > 0.0 and moved > _MOTION * settings.atol):
+    if not (run.allowed > _ALLOWED * largest > 0.0 and moved > _MOTION * settings.atol):
         return ""
     if not run.repeatable:
         return ""
-    begin, atol = (settings.t0, *run.start), _TIGHT * largest / inertia
+    begin, atol = (settings.t0, *run.start), _TIGHT * largest / run.inertia
     status, tight = run.repeated(begin, float(t[-1]), 0.0, max_steps=MOST_STEPS, atol=atol)
     if status == Status.FINISHED and not run.whole_change([x[-1:] for x in run.states], tight) > TOLERANCE:
         return ""

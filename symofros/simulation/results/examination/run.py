@@ -157,6 +157,11 @@ class ExaminedRun(HeldRun):
         """Norm of a unit of each speed at the end of the run."""
         return float(np.sqrt(np.trace(self._metrics_of_some[0])))
 
+    @property
+    def allowed(self) -> float:
+        """Error of all states that the absolute tolerance allows a step, in the norm of the kinetic energy."""
+        return self.settings.atol * self.inertia if self.settings.adaptive else 0.0
+
     @cached_property
     def reach(self) -> float:
         """Largest displacement of the run, in that norm."""
@@ -299,15 +304,21 @@ class ExaminedRun(HeldRun):
         ends = (x[2][rows] for x in (coarse, fine))
         return max(change, change_of_states(*(v[:, ~self.moving] for v in (self.states[2], *ends)))), ""
 
-    def change_in_part(self, coarse: States, fine: States) -> float:
-        """Largest difference of speeds and displacements, relative to the run's fastest and what that makes of time."""
+    def change_in_part(self, coarse: States, fine: States, size: float = 0.0) -> float:
+        """Largest difference of speeds and displacements, relative to the run's fastest and what that makes of time.
+
+        Args:
+            coarse: States of a part of the run.
+            fine: The same by finer steps.
+            size: Speed, and displacement, that the run's count as at least, in the norm of the kinetic energy.
+        """
         (_, q, v, _), (t, q_fine, v_fine, u) = coarse, fine
         with np.errstate(all="ignore"):  # What has exploded overflows.
             changes = v - v_fine, self.model.difference(q_fine, q)
             faster, apart = (float(self.norms(q_fine, u, x).max()) for x in changes)
-        span, rounding = float(t[-1] - t[0]), self.rounding(fine)
-        largest = max(self.fastest, rounding)
-        reach = min(largest * span, max(self.reach, rounding * span))  # To and fro comes no farther.
+        span, rounding = float(t[-1] - t[0]), max(self.rounding(fine), self.rounding(self.states))
+        largest = max(self.fastest, rounding, size)
+        reach = max(size, min(largest * span, max(self.reach, rounding * span)))  # To and fro comes no farther.
         return max(share_of(faster, largest), share_of(apart, reach) / _POSITIONS)
 
     def whole_change(self, states: States, finer: States) -> float:

@@ -91,6 +91,8 @@ def examine_steps(run: ExaminedRun) -> Resolution:
     q_all, v_all = (np.concatenate([x[np.newaxis], y[rows]]) for x, y in zip(begin, (q, v), strict=True))
     metric = run.metrics(q_all, np.concatenate([u[:1], u[rows]]))
     norms = norms_in(metric, v_all)
+    if not norms.max() > run.rounding(run.states):
+        return Resolution()
     # The start, and the fastest state of equal parts of the run: modes are fast where the motion is.
     wanted = states_to_examine(run.steps, stepper.method.tableau.stages, run.model.nv)
     parts = [part for part in np.array_split(np.arange(1, len(norms)), wanted - 1) if len(part)]

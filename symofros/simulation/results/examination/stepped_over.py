@@ -26,8 +26,8 @@ _SHARE, _LEAST, _MOST, _CALLS, _FEWEST = 0.25, 512, 4096, 256, 4
 # Of intervals of several steps the longest are made once more: about so many steps, or this share of all where that is
 # more. Steps that are held against shorter ones.
 _REPEATED, _PROVED = (512, 0.05), 4
-# Change by shorter steps that is worth a note where steps adapt: this many times the bound of a step's error, within
-# these shares. A step that is no longer than its error allows is off by far less.
+# Change by shorter steps that is worth a note where steps adapt: this many times the bound of a step's error, that by
+# rtol within these shares, and that by atol. A step that is no longer than its error allows is off by far less.
 _BOUNDS, _NOTED = 100.0, (0.01, TOLERANCE)
 # Change of speed that a step leaves out, by the cubic through its ends, from which it is held against shorter ones.
 _DOUBTED = 0.5
@@ -48,16 +48,17 @@ def stepped_over_note(run: ExaminedRun) -> str:
         least, most = _CALLS if settings.adaptive else 0, _CALLS
     number = int(min(max(share, least), most))
     noted = min(max(_BOUNDS * settings.rtol, _NOTED[0]), _NOTED[1]) if settings.adaptive else TOLERANCE
+    size = max(run.fastest, run.rounding(run.states), _BOUNDS * run.allowed / noted)
     for ends in _single_steps(run, number):
-        for i, part in _doubted(run, ends, number, _DOUBTED * noted):
+        for i, part in _doubted(run, ends, number, _DOUBTED * noted, size):
             coarse, first = [x[i : i + 2] for x in ends], [x[i] for x in ends[:3]]
             status, finer = run.in_short_steps(first, float(ends[0][i + 1]), part)
             if status != Status.FINISHED:
                 continue
-            change = run.change_in_part(coarse, [x[[0, -1]] for x in finer])
+            change = run.change_in_part(coarse, [x[[0, -1]] for x in finer], size)
             if change > noted:
                 return _note(run, ends, i, part, change)
-        step, part, change = passed_over(run, ends, noted)
+        step, part, change = passed_over(run, ends, noted, size)
         if change > 0.0:
             return _note(run, ends, step, part, change)
     return ""
@@ -102,8 +103,8 @@ def _single_steps(run: ExaminedRun, number: int) -> Iterator[States]:
             yield ends
 
 
-def _doubted(run: ExaminedRun, ends: States, number: int, least: float) -> list[tuple[int, float]]:
-    """Steps, by number, that leave out most change of speed, (18b), and how far apart the states within them were."""
+def _doubted(run: ExaminedRun, ends: States, number: int, least: float, size: float) -> list[tuple[int, float]]:
+    """Steps, by number, that leave out most of a speed `size`, (18b), and how far apart the states within them were."""
     spans = np.diff(ends[0])
     counts = np.floor(number * spans / run.span).astype(int)
     counts[counts < _FEWEST] = 0
@@ -116,10 +117,10 @@ def _doubted(run: ExaminedRun, ends: States, number: int, least: float) -> list[
     metric = run.metrics(ends[1][chosen], ends[3][chosen])
     with np.errstate(all="ignore"):  # What has exploded overflows.
         missed = (path.a - path.path_a) * (spans / np.maximum(counts, 1))[path.interval, np.newaxis]
-        if (_bounds_of_sums(missed, counts[chosen], metric) <= least * run.fastest).all():
+        if (_bounds_of_sums(missed, counts[chosen], metric) <= least * size).all():
             return []
         left_out = _largest_sums(missed, counts[chosen], metric)
-    shares = left_out / max(run.fastest, left_out.max(), 1e-300)
+    shares = left_out / max(size, left_out.max(), 1e-300)
     worst = np.argsort(-shares, kind="stable")[:_PROVED]
     return [(int(chosen[k]), float(spans[chosen[k]] / counts[chosen[k]])) for k in worst if shares[k] > least]
 

@@ -90,6 +90,7 @@ def test_displacements_are_judged_by_how_far_a_motion_comes(speed: float) -> Non
         rounding=lambda states: 1e-12,
         fastest=speed,
         reach=reach,
+        states=[],
     )
     found = ExaminedRun.change_in_part(run, [t, q + 1e-3, v, nothing], [t, q, v, nothing])
     assert found == pytest.approx(1e-3 / min(reach, 10.0 * speed) / 3.0)

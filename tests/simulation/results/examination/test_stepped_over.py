@@ -46,6 +46,30 @@ def test_a_narrow_force_is_met_or_noted(method: str, seed: int) -> None:
     assert (off < 1e-3) != bool(noted(run)), (at, width, force, off, str(run.outcome))
 
 
+@pytest.mark.parametrize("method", [*ADAPTIVE, "generalized_alpha", "implicit_euler"])
+@pytest.mark.parametrize("angle", [np.pi / 2, -np.pi / 2])
+def test_a_double_pendulum_at_rest_bears_no_note(method: str, angle: float) -> None:
+    """Hanging, or on its head as long as that stays so: what moves is rounding, or what atol allows."""
+    options: dict[str, Any] = {"dt": 0.01} if method in ("generalized_alpha", "implicit_euler") else {}
+    for t_end in (1.0, 10.0, 100.0):
+        run = sf.simulate(compiled("double_pendulum"), [angle, 0.0], t_end=t_end, method=method, **options)
+        assert run.outcome.notes == () or np.abs(run.v).max() > 1e-3, (t_end, run.outcome.notes)
+        if angle > 0.0:
+            assert np.abs(run.v).max() < 1e-6
+
+
+@pytest.mark.parametrize("method", ADAPTIVE)
+@pytest.mark.parametrize(("speed", "counts"), [(1e-5, True), (1e-12, False)])
+def test_forces_that_change_slow_motions_by_more_than_the_tolerances_are_noted(
+    method: str, speed: float, counts: bool
+) -> None:
+    """A hundred times atol, 1e-9: a bell on the way of a slow cart adds two thirds of its speed, met by no step."""
+    law = {"x": f"{1000.0 * speed}*exp(-((x/{speed} - 5.0)/0.0005)^2)"}
+    run = sf.simulate(sf.compile(CART), [0.0], [speed], 10.0, u=law, method=method)
+    assert run.v[-1, 0] == pytest.approx(speed, rel=1e-3)  # In place of 1.67 times as fast.
+    assert bool(noted(run)) == counts, str(run.outcome)
+
+
 # Forces on a way of about w about x = c, and the last speed of a kilogram that comes with 1 m/s.
 NARROW = {
     "bell": ("exp(-((x - {c})/{w})^2)/{w}", (1.0 + 2.0 * np.sqrt(np.pi)) ** 0.5),
@@ -170,12 +194,12 @@ def test_the_steps_that_leave_out_most_are_doubted_first(rng: np.random.Generato
     path = SimpleNamespace(interval=np.repeat(np.arange(10), 8), a=missed.reshape(-1, 2), path_a=0.0)
     monkeypatch.setattr(stepped_over, "path_within", lambda *_: path)
     metric = np.tile(np.diag([4.0, 1.0]), (10, 1, 1))
-    run: Any = SimpleNamespace(stepper=None, span=5.0, fastest=50.0, metrics=lambda q, u: metric[: len(q)])
+    run: Any = SimpleNamespace(stepper=None, span=5.0, metrics=lambda q, u: metric[: len(q)])
     ends = [np.arange(11) * 0.5, np.zeros((11, 2)), np.zeros((11, 2)), np.zeros((11, 1))]
     sums = np.linalg.norm(np.cumsum(missed, axis=1) * [2.0, 1.0] * 0.5 / 8, axis=-1).max(axis=1) / 50.0
     order = np.argsort(-sums)
     for least, count in ((0.0, stepped_over._PROVED), (float(sums[order[2]]) * 1.001, 2)):
-        doubted = stepped_over._doubted(run, ends, 80, least)
+        doubted = stepped_over._doubted(run, ends, 80, least, 50.0)
         assert doubted == [(i, 0.5 / 8) for i in order[:count]]
 
 
