@@ -15,7 +15,7 @@ from itertools import chain, islice
 # Nobody reads more, and hostile files have millions.
 MAX_PROBLEMS = 100
 _CANDIDATES = 1000
-# So many problems that differ in the names of their objects alone are told as one, which names so many of the others.
+# So many problems that differ in the names of their objects alone are listed as one, which names so many of the others.
 _ALIKE, _NAMED = 3, 3
 _QUOTED = re.compile(r"'[^']*'")
 
@@ -115,17 +115,17 @@ class Problem:
 
 def listed(problems: Sequence[Problem]) -> str:
     """The text of problems; several that differ in the names of their objects alone are one, with their number."""
-    alike: dict[tuple[str, ...], list[Problem]] = {}
+    by_kind: dict[tuple[str, ...], list[Problem]] = {}
     for problem in problems:
         kind = _QUOTED.sub("'", problem.what), problem.found, problem.rule, problem.remedy
-        alike.setdefault(kind, []).append(problem)
-    told = (map(str, each) if len(each) < _ALIKE else [_gathered(each)] for each in alike.values())
-    return "\n".join(chain.from_iterable(told))
+        by_kind.setdefault(kind, []).append(problem)
+    texts = (map(str, each) if len(each) < _ALIKE else [_gathered(each)] for each in by_kind.values())
+    return "\n".join(chain.from_iterable(texts))
 
 
-def _gathered(alike: Sequence[Problem]) -> str:
+def _gathered(by_kind: Sequence[Problem]) -> str:
     """The first of problems of one kind, with the number of the others and the first names among these."""
-    first, others = alike[0], alike[1:]
+    first, others = by_kind[0], by_kind[1:]
     shown = ", ".join(map(_named, others[:_NAMED])) + (", …" if len(others) > _NAMED else "")
     return str(replace(first, what=f"{first.what}; likewise {len(others)} more: {shown}"))
 

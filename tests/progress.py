@@ -15,7 +15,7 @@ EVERY = 20.0
 
 
 class Progress:
-    """Lines of a run's progress, told by the process that hands tests to workers.
+    """Lines of a run's progress, printed by the process that hands tests to workers.
 
     Args:
         writer: Pytest's terminal writer: `width_of_current_line`, `line`.
@@ -24,7 +24,7 @@ class Progress:
 
     def __init__(self, writer: Any, clock: Any = time.monotonic) -> None:
         self._writer, self._clock = writer, clock
-        self._total, self._done, self._begin, self._told = 0, 0, clock(), clock()
+        self._total, self._done, self._begin, self._printed = 0, 0, clock(), clock()
 
     @pytest.hookimpl(optionalhook=True)
     def pytest_xdist_setupnodes(self, specs: list[Any]) -> None:
@@ -42,12 +42,12 @@ class Progress:
         """A test is done, or skipped."""
         self._done += 1
         now = self._clock()
-        if self._total and now - self._told >= EVERY:
+        if self._total and now - self._printed >= EVERY:
             left = (now - self._begin) * (self._total / self._done - 1)
             self._tell(f"{self._done} of {self._total}, about {left / 60:.1f} min left; now {nodeid.partition('[')[0]}")
 
     def _tell(self, text: str) -> None:
-        self._told = self._clock()
+        self._printed = self._clock()
         if self._writer.width_of_current_line:  # Of dots.
             self._writer.line()
         self._writer.line(text, flush=True)

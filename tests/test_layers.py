@@ -251,7 +251,7 @@ def test_folders_of_the_waist_export_only_used_names() -> None:
 # Names of modules that are installed under another name than that of their folder.
 _NAMED = re.compile(r"(symofros\.)?(validation|reference_models)(\.\w+)*")
 _BY_NAME = {"import_module", "find_spec", "files", "run_module"}
-# The harness's name is told by one; the other's judges run in a copy of the repository, which is a checkout.
+# The harness's name is stated by one; the other's judges run in a copy of the repository, which is a checkout.
 _MAY_NAME = {"symofros/harness.py", "validation/mutation/study.py"}
 
 
@@ -278,17 +278,19 @@ def test_imports_are_absolute_in_symofros_and_relative_in_the_harness() -> None:
     def faults(path: Path) -> Iterator[str]:
         for node in ast.walk(ast.parse(path.read_text())):
             if isinstance(node, ast.If) and ast.unparse(node.test) == "TYPE_CHECKING":
-                told.update(map(id, node.body))
+                for_types.update(map(id, node.body))
             if isinstance(node, ast.ImportFrom) and node.level and path in SOURCES:
                 yield f"line {node.lineno}: a relative import"
             if isinstance(node, ast.Import | ast.ImportFrom) and path not in SOURCES:
                 names = [alias.name for alias in node.names] if isinstance(node, ast.Import) else [node.module or ""]
                 absolute_ones = isinstance(node, ast.Import) or not node.level
                 wrong = {name for name in names if _NAMED.fullmatch(name)} if absolute_ones else set()
-                if wrong and not (id(node) in told and wrong <= {n for n in wrong if n.startswith("reference_models")}):
+                if wrong and not (
+                    id(node) in for_types and wrong <= {n for n in wrong if n.startswith("reference_models")}
+                ):
                     yield f"line {node.lineno}: {', '.join(wrong)}: not relative"
 
-    told: set[int] = set()  # Statements for type checkers; a walk comes to them after the condition.
+    for_types: set[int] = set()  # Statements for type checkers; a walk comes to them after the condition.
     check_all((*SOURCES, *HARNESS_SOURCES, *REFERENCE_SOURCES), faults)
 
 

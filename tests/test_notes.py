@@ -186,8 +186,8 @@ def test_a_file_is_remarked_upon_where_something_of_it_is_left_out(tmp_path: Pat
         "links without <inertial> are massless: 1 link (base)",
         "<transmission> ignored: efforts are those of joints",
     )
-    told = [note for note in notes if not note.startswith(usual)]
-    assert [said in note for note in told] == [True] * bool(said), notes
+    reported = [note for note in notes if not note.startswith(usual)]
+    assert [said in note for note in reported] == [True] * bool(said), notes
 
 
 @pytest.mark.parametrize("name", ["pendulum", "double_pendulum", "four_bar", "flexible_pendulum", "car", "heavy_top"])

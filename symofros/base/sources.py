@@ -1,4 +1,4 @@
-"""The files that something was made of, so that it can be told later whether they still say the same."""
+"""The files that something was made of, so that a later check shows whether they are unchanged."""
 
 from __future__ import annotations
 

@@ -6,7 +6,7 @@ from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
 from symofros.blocks.checks import refuse
-from symofros.blocks.model_function import OFFERED, told_ports, told_values
+from symofros.blocks.model_function import OFFERED, output_ports, output_values
 from symofros.blocks.quantities import WRENCH, frame_ports, motion_port
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Terms, Values
 from symofros.diagrams.program.variants import FRICTION
@@ -88,8 +88,8 @@ class ForwardDynamics(Block):
         outputs += [Port("lam", (record.nc,))] if record.nc else []
         outputs += [Port("z", (len(record.state_names),))] if record.state_names else []
         for function in self.tells:
-            told = told_ports(self.name, function, record)
-            outputs += [replace(port, name=name) for port, name in zip(told, _told(function), strict=True)]
+            shown = output_ports(self.name, function, record)
+            outputs += [replace(port, name=name) for port, name in zip(shown, _names_of_outputs(function), strict=True)]
         return Ports(tuple(inputs), tuple(outputs))
 
     def motion(self, context: EvaluationContext) -> Terms:
@@ -147,9 +147,10 @@ class ForwardDynamics(Block):
         signals |= {"lam": context.lam} if record.nc else {}
         given = {**motion, **states, "u": context.inputs["u"], "t": context.t}
         for function in self.tells:
-            values = told_values(context, self.model, function, "", {**given, "lam": context.lam})
+            values = output_values(context, self.model, function, "", {**given, "lam": context.lam})
             signals |= {
-                name: values[of.name] for name, of in zip(_told(function), OFFERED[function].outputs, strict=True)
+                name: values[of.name]
+                for name, of in zip(_names_of_outputs(function), OFFERED[function].outputs, strict=True)
             }
         return signals
 
@@ -206,7 +207,7 @@ def friction(context: EvaluationContext, model: str, q: Tensor, v: Tensor, **sta
     return force * [float(rubs) for rubs in has_friction]
 
 
-def _told(function: str) -> list[str]:
+def _names_of_outputs(function: str) -> list[str]:
     """Names of the ports of a function's outputs."""
     outputs = OFFERED[function].outputs
     return [function] if len(outputs) == 1 else [f"{function}_{output.name}" for output in outputs]

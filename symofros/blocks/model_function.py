@@ -55,7 +55,7 @@ class ModelFunction(Block):
         record, row = environment.model(self.model), OFFERED[self.function]
         if self.frame:
             environment.frame(self.model, self.frame)
-        outputs = told_ports(self.name, self.function, record)
+        outputs = output_ports(self.name, self.function, record)
         groups = [*row.inputs, *(["u"] if record.driven and "u" not in row.inputs else [])]
         groups += ["lam"] if _reads_reactions(self.function, record) else []
         inputs = [_input(group, record) for group in groups if group != "t" and _entries(group, record)]
@@ -71,10 +71,10 @@ class ModelFunction(Block):
         record = context.environment.model(self.model)
         given = {name: signal for name, signal in none.items() if not _entries(name, record)}
         given |= {"t": context.t, **context.inputs}
-        return told_values(context, self.model, self.function, self.frame, given)
+        return output_values(context, self.model, self.function, self.frame, given)
 
 
-def told_ports(block: str, function: str, record: ModelRecord) -> tuple[Port, ...]:
+def output_ports(block: str, function: str, record: ModelRecord) -> tuple[Port, ...]:
     """Ports of the outputs of an offered function.
 
     Args:
@@ -96,7 +96,7 @@ def told_ports(block: str, function: str, record: ModelRecord) -> tuple[Port, ..
     return outputs
 
 
-def told_values(at: EvaluationContext, model: str, function: str, frame: str, given: Mapping[str, Tensor]) -> Values:
+def output_values(at: EvaluationContext, model: str, function: str, frame: str, given: Mapping[str, Tensor]) -> Values:
     """Outputs of an offered function; forces of rigid contacts are those of their multipliers."""
     record = at.environment.model(model)
     found = at.call(model, function, frame, **given)

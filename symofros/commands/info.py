@@ -92,8 +92,8 @@ def _counts(system: sf.System, frame: str) -> dict[str, Operations]:
 def _choices(system: sf.System) -> dict[str, tuple[Choice, ...]]:
     """Methods of every function, as a model has them that makes each when it is first called."""
     of_trees = (name for name in DEFAULT_FUNCTIONS if system.constraints or not FUNCTIONS[name].constrained_only)
-    told = sf.compile(system).routes
-    return {name: told[name] for name in of_trees}
+    methods = sf.compile(system).routes
+    return {name: methods[name] for name in of_trees}
 
 
 def _routes(choices: dict[str, tuple[Choice, ...]]) -> Table:

@@ -176,8 +176,8 @@ def _drawn(run: sf.Trajectory, names: list[str], picture: str) -> str:
     run.plot(*names).savefig(picture, dpi=120)
     count = len(names or run.model.names.q)
     if count > MAX_CURVES:
-        told = f"{picture} shows the first {MAX_CURVES} of {count} coordinates: --signals NAME,... chooses others"
-        err.print(told, markup=False, highlight=False, soft_wrap=True)
+        note = f"{picture} shows the first {MAX_CURVES} of {count} coordinates: --signals NAME,... chooses others"
+        err.print(note, markup=False, highlight=False, soft_wrap=True)
     return picture
 
 

@@ -43,7 +43,7 @@ def remark_unread(
     """Tell of what nothing reads in an element: other attributes than its own, and all but the first of equal children.
 
     Args:
-        remarks: Where it is told.
+        remarks: Where it is reported.
         element: An element of a link or joint, or one inside of it.
         attributes: Element -> the attributes that it has.
         several: Elements that may be stated more than once.

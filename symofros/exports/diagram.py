@@ -133,12 +133,12 @@ def diagram_program(
     """The C text of a diagram; arguments and errors as of `write_diagram`."""
     resolved = resolve(diagram)
     _refuse(resolved, stepping)
-    told = outputs or default_outputs(diagram, resolved)
-    interface = Interface.of(resolved, told)
+    shown = outputs or default_outputs(diagram, resolved)
+    interface = Interface.of(resolved, shown)
     name, title = identifier(diagram.name), diagram.name
     write = fuser(resolved)
     files: dict[str, str] = {f"{name}.h": _header(name, title, interface, generator)}
-    first = first_motion(diagram, interface, told, stepping)
+    first = first_motion(diagram, interface, shown, stepping)
     for i, (q, v) in enumerate(first.starts):
         files |= _part_files(resolved, write, i, (q, v), stepping, generator)
     instants = run_passes(write.samples(resolved.schedule.sets, interface.sources))

@@ -74,12 +74,12 @@ class Interface:
             shape, units = inlet.port.shape or (), inlet.port.entry_units
             inputs.append(Quantity(inlet.name, shape, _spread(units, shape), tuple(inlet.start().tolist())))
         sources = tuple(map(wired.output, outputs))
-        told = []
+        exported = []
         for text, source in zip(outputs, sources, strict=True):
             units = next(port for port in wired.ports[source[0]].outputs if port.name == source[1]).entry_units
             shape, depends = wired.shape(source), _inlets_behind(resolved, source)
             name = text if text in wired.outlets else ".".join(source)
-            told.append(Quantity(name, shape, _spread(units, shape), depends=depends))
+            exported.append(Quantity(name, shape, _spread(units, shape), depends=depends))
         parameters = []
         for (block, key), place in layout.parameters.items():
             values = layout.par[place.slice]
@@ -90,7 +90,7 @@ class Interface:
             stated = {parameter.name: parameter.unit for parameter in wired.models.system(key).parameters}
             for name, value in zip(wired.models.record(key).par_names, values, strict=True):
                 parameters.append(Quantity(f"{key}.{name}", (), (stated.get(name, ""),), (value,)))
-        return Interface(tuple(inputs), tuple(told), tuple(parameters), sources)
+        return Interface(tuple(inputs), tuple(exported), tuple(parameters), sources)
 
     def enumerations(self, prefix: str) -> list[str]:
         """Lines of C: where each quantity begins in its array, and how many entries it has."""

@@ -71,7 +71,7 @@ _TARGETS_WITH_CHOSEN_FUNCTIONS = ("c", "wasm")
 # Targets whose steps, or those of whose hosts, end at instants of formulas of time.
 _STEPPED = ("c", "mex", "wasm", "fmu2", "fmu3")
 _UNKNOWN_INSTANTS = (
-    "formulas of time bend, jump or are narrow at instants that Simulink's solvers are not told of: a step may pass"
+    "formulas of time bend, jump or are narrow at instants that Simulink's solvers do not know: a step may pass"
     " over a pulse unseen; bound the step by the shortest of them"
 )
 # Targets that give exact derivatives of their outputs, by inputs too.
@@ -235,8 +235,8 @@ def _with_stepping() -> Iterator[None]:
     try:
         yield
     except DescriptionError as error:
-        told = (replace(problem, remedy=problem.remedy.replace(OTHER_FUNCTIONS, "")) for problem in error.problems)
-        raise DescriptionError([*told]) from None
+        reworded = (replace(problem, remedy=problem.remedy.replace(OTHER_FUNCTIONS, "")) for problem in error.problems)
+        raise DescriptionError([*reworded]) from None
 
 
 def _material(

@@ -69,7 +69,7 @@ class UnitCompiler:
         self._on_tape, self._background = on_tape, background
         # Dataclasses print every field, so that this states all that a text depends on besides the request.
         self._recipe = repr((programs.tree.system, options, np.__version__))
-        self._told: dict[tuple[Request, ...], dict[Key, tuple[Choice, ...]]] = {}
+        self._choices_of: dict[tuple[Request, ...], dict[Key, tuple[Choice, ...]]] = {}
         # Units may be asked for by several threads: C compilers run beside each other, graphs are formed in turn.
         self._generating = threading.Lock()
 
@@ -145,15 +145,15 @@ class UnitCompiler:
         """The methods of the functions of one unit, found as its text is written."""
         requests = tuple(Request(*key) for key in keys)
         with self._generating:
-            if requests not in self._told:
+            if requests not in self._choices_of:
                 program = self._programs.program(requests)
                 choices = {(function.name, function.frame): function.choices for function in program.functions}
                 if self._toolchain is not None:
                     choices = model_text(program, self._record, GENERATOR, packs=self._packs).choices
                     for f in program.functions:
                         choices[f.name, f.frame] += (self._batches(f),)
-                self._told[requests] = choices
-            return self._told[requests]
+                self._choices_of[requests] = choices
+            return self._choices_of[requests]
 
     def _batches(self, function: Function) -> Choice:
         """The choice of how large batches of a function are evaluated, with its reason."""

@@ -49,7 +49,7 @@ class BackgroundCompilation:
         return any(process.poll() is None for process in self._processes)
 
     def wait(self) -> None:
-        """Wait for what is being compiled. A failure is told by whoever compiles the same again."""
+        """Wait for what is being compiled. A failure is raised when the same is compiled again."""
         for process in self._processes:
             process.wait()
 

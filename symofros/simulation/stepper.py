@@ -103,7 +103,7 @@ class Stepper(SteppedModel):
         prepare_run(model, settings)
         self._kind = owner_of("stepper", model.record.name)
         self._hand = HandRun(model, settings, inputs, fixed_inputs(u), events_of(model, events), values)
-        self._told: list[tuple[Met, Found]] = []
+        self._known_events: list[tuple[Met, Found]] = []
         self._first = settings.t0
         self.dt, self.z = settings.dt, model.states_of(self._hand.v)
         self.q, self.v = self._hand.q[: stated.nq], self._hand.v[: stated.nv]
@@ -233,12 +233,12 @@ class Stepper(SteppedModel):
     @property
     def events(self) -> tuple[Found, ...]:
         """Events met since the reset, in the order of time, with what their actions did."""
-        met, told, run = self._hand.events, self._told, self._hand.run
+        met, known_events, run = self._hand.events, self._known_events, self._hand.run
         known = 0  # Those that were asked for before are not worked out again.
-        while known < min(len(met), len(told)) and told[known][0] is met[known]:
+        while known < min(len(met), len(known_events)) and known_events[known][0] is met[known]:
             known += 1
-        told[known:] = [(one, found_of(run, one).of(self.model)) for one in met[known:]]
-        return tuple(found for _, found in told)
+        known_events[known:] = [(one, found_of(run, one).of(self.model)) for one in met[known:]]
+        return tuple(found for _, found in known_events)
 
     def trajectory(self) -> Trajectory:
         """The motion since the reset as `simulate` gives it: it is made once more, with the inputs of its steps.

@@ -78,7 +78,7 @@ def run_each(
 
 
 def refused(make: Callable[[], object], found: str, remedy: str = "") -> Problem:
-    """What is stated wrongly is refused, and told in four parts: the block, what was found, a rule, a remedy."""
+    """Wrong fields are refused, in four parts: the block, what was found, a rule, a remedy."""
     with pytest.raises(sf.DescriptionError) as caught:
         make()
     problem = caught.value.problems[0]

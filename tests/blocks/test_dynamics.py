@@ -44,8 +44,8 @@ def test_two_frames_of_one_port_are_refused() -> None:
 def test_a_mechanism_tells_functions_of_its_motion() -> None:
     """Those of the model along the run, at the parameters that an event has set by then."""
     gripper = CASES["grasp"]
-    told = ("kinetic_energy", "closure_wrenches", "joint_wrenches", "centroidal_momentum")
-    run = sf.Simulation(diagram(gripper, tells=told)).run(gripper.t_end, dt=1e-2)
+    functions = ("kinetic_energy", "closure_wrenches", "joint_wrenches", "centroidal_momentum")
+    run = sf.Simulation(diagram(gripper, tells=functions)).run(gripper.t_end, dt=1e-2)
     alone = simulated(gripper, dt=1e-2)
     model, after = alone.model, alone.par_over_time[-1]
     (q, v), a, lam, t = run.motion("plant"), run["plant.a"], run["plant.lam"], run.t

@@ -85,8 +85,8 @@ def test_the_help_imports_no_command() -> None:
         "import sys, symofros.__main__ as m; from typer.testing import CliRunner; "
         "print(CliRunner().invoke(m.app, ['--help']).output); print(*sys.modules)"
     )
-    told = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
-    *listed, modules = told.strip().splitlines()
+    printed = subprocess.run([sys.executable, "-c", code], capture_output=True, text=True, check=True).stdout
+    *listed, modules = printed.strip().splitlines()
     rows: dict[str, str] = {}
     name = ""
     for words in (line[2:] for line in listed if line.startswith("  ")):
@@ -134,10 +134,10 @@ def test_info_lists_the_mass_of_a_tapered_beam(tmp_path: Path) -> None:
 
 def test_info_lists_the_chosen_methods(monkeypatch: pytest.MonkeyPatch) -> None:
     """All in JSON, what was chosen among several in a table of 80 columns."""
-    told = json.loads(invoke("info", CART_POLE, "--routes", "--json").output)["routes"]
-    (acceleration, *_) = told["forward_dynamics"]
+    printed = json.loads(invoke("info", CART_POLE, "--routes", "--json").output)["routes"]
+    (acceleration, *_) = printed["forward_dynamics"]
     assert acceleration["quantity"] == "acceleration of trees" and acceleration["figures"]["factors_effort"] > 0
-    assert not {"project", "constraint", "forward_dynamics_vjp"} & told.keys() and told["kinetic_energy"]
+    assert not {"project", "constraint", "forward_dynamics_vjp"} & printed.keys() and printed["kinetic_energy"]
     monkeypatch.setenv("COLUMNS", "80")
     shown = invoke("info", CART_POLE, "--routes").output
     assert f"acceleration of trees: {acceleration['method']}" in shown and "…" not in shown
@@ -260,9 +260,9 @@ def test_kernels_lists_registers_and_the_memory_bound(monkeypatch: pytest.Monkey
     """Without a graphics processor, and so without times."""
     require("nvidia.cuda_nvrtc", "cuda")
     monkeypatch.setattr("symofros.commands.kernels.present", lambda: None)
-    told = invoke("kernels", CART_POLE, "--architecture", "sm_80", "--bandwidth", 2000, "--json")
-    assert told.exit_code == 0, told.output
-    double, single = json.loads(told.output)["kernels"]
+    printed = invoke("kernels", CART_POLE, "--architecture", "sm_80", "--bandwidth", 2000, "--json")
+    assert printed.exit_code == 0, printed.output
+    double, single = json.loads(printed.output)["kernels"]
     # q, v, u, t, and M, h, Q: 2 + 2 + 1 + 1 + 4 + 2 + 2 numbers.
     assert double["bytes_of_state"] == 14 * 8 and single["bytes_of_state"] == 14 * 4
     assert double["bound"] == 2e12 / (14 * 8)

@@ -40,15 +40,15 @@ def invoke(*arguments: object) -> Any:
 
 @pytest.mark.parametrize("command", LOADERS)
 def test_every_command_that_loads_a_model_has_the_reading_options(command: str) -> None:
-    told = invoke(command, "--help").output
+    result = invoke(command, "--help").output
     for option in ("--floating-base", "--mimic", "--waive", "--package", "--argument"):
-        assert option in told
+        assert option in result
 
 
 def test_the_waiver_named_in_the_remedy_is_accepted(tmp_path: Path) -> None:
     path = kinematic(tmp_path, 2)
-    told = invoke("info", path)
-    assert told.exit_code == 2 and "or --waive massless_tip" in told.output and "load(" not in told.output
+    result = invoke("info", path)
+    assert result.exit_code == 2 and "or --waive massless_tip" in result.output and "load(" not in result.output
     assert json.loads(invoke("info", path, "--waive", "massless_tip", "--json").output)["nv"] == 2
     picture = tmp_path / "k.png"
     assert invoke("view", path, "--waive", "massless_tip", "--record", picture).exit_code == 0 and picture.is_file()
@@ -69,9 +69,9 @@ def test_compile_caches_models_by_their_reading_options(tmp_path: Path, monkeypa
 def test_an_export_with_stepping_suggests_no_other_functions(tmp_path: Path) -> None:
     path = kinematic(tmp_path, 1)
     asked = "--target", "c", "--functions", "frame_pose", "--waive", "massless_tip"
-    told = invoke("export", path, "--output", tmp_path / "out", *asked)
-    said = " ".join(told.output.split())
-    assert told.exit_code == 2 and "give it an inertia, or bind it by a constraint" in said
+    result = invoke("export", path, "--output", tmp_path / "out", *asked)
+    said = " ".join(result.output.split())
+    assert result.exit_code == 2 and "give it an inertia, or bind it by a constraint" in said
     assert "other functions" not in said
 
 
@@ -79,10 +79,10 @@ def test_diagrams_and_native_files_accept_no_reading_options(tmp_path: Path) -> 
     diagram = tmp_path / "d.yaml"
     diagram.write_text("symofros_diagram: 1\nblocks: {}\n")
     for command in ("info", "simulate"):
-        told = invoke(command, diagram, "--waive", "massless_tip")
-        assert told.exit_code == 2 and "the file is a diagram" in told.output
-    told = invoke("edit", tmp_path / "new.yaml", "--waive", "massless_tip", "--no-browser")
-    assert told.exit_code == 2 and "opened as it stands" in told.output
+        result = invoke(command, diagram, "--waive", "massless_tip")
+        assert result.exit_code == 2 and "the file is a diagram" in result.output
+    result = invoke("edit", tmp_path / "new.yaml", "--waive", "massless_tip", "--no-browser")
+    assert result.exit_code == 2 and "opened as it stands" in result.output
 
 
 def test_reading_options_parse_pairs_and_backquoted_names() -> None:
@@ -100,8 +100,8 @@ def test_reading_options_parse_pairs_and_backquoted_names() -> None:
 def test_a_name_with_an_equals_sign_is_shown_with_its_backquotes(tmp_path: Path) -> None:
     body = sf.RigidBody("b", sf.Joint("a=b", "revolute", "world"), sf.Inertia(1.0, (1, 0, 0)))
     sf.save(sf.System("s", (body,)), tmp_path / "s.yaml")
-    told = invoke("equilibrium", tmp_path / "s.yaml", "--set", "a=b=0.2")
-    assert told.exit_code == 2 and "write '`a=b`=0.2'" in told.output
+    result = invoke("equilibrium", tmp_path / "s.yaml", "--set", "a=b=0.2")
+    assert result.exit_code == 2 and "write '`a=b`=0.2'" in result.output
 
 
 def test_equal_problems_are_one_line_with_their_number(tmp_path: Path) -> None:
@@ -115,7 +115,7 @@ def test_equal_problems_are_one_line_with_their_number(tmp_path: Path) -> None:
 
 
 def test_problems_that_differ_are_listed_separately() -> None:
-    """In what was found, in the rule, in the remedy; and a pair is told with both lines."""
+    """In what was found, in the rule, in the remedy; and a pair is named with both lines."""
     stated = [Problem(f"body '{name}' is odd", found, "r", "m", f"a:{i}") for i, (name, found) in enumerate(PAIRS)]
     assert len(str(SymofrosError(stated)).splitlines()) == 4 * 4
     pair = [Problem(f"body '{name}' is odd", "f", "r", "m") for name in "ab"]
@@ -154,10 +154,10 @@ def test_tables_in_a_pipe_are_not_wrapped(tmp_path: Path) -> None:
     code = "import sys; sys.argv = ['symofros', 'info', sys.argv[1]]; from symofros.__main__ import app; app()"
     free = {name: text for name, text in os.environ.items() if name != "COLUMNS"}
     asked = [sys.executable, "-c", code, tmp_path / "s.yaml"]
-    told = subprocess.run(asked, capture_output=True, text=True, env=free).stdout
-    (row,) = [line for line in told.splitlines() if f"{name}_1 " in line and "0.123456" in line]
+    result = subprocess.run(asked, capture_output=True, text=True, env=free).stdout
+    (row,) = [line for line in result.splitlines() if f"{name}_1 " in line and "0.123456" in line]
     assert "0.123456, 0.234567, 0.345678" in row
-    assert "mass [kg]" in told  # Brackets are no styles.
+    assert "mass [kg]" in result  # Brackets are no styles.
 
 
 def test_pictures_name_omitted_items(tmp_path: Path) -> None:

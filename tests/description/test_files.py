@@ -49,7 +49,7 @@ def test_all_faults_of_a_file_are_reported_together(tmp_path: Path) -> None:
     places = [message.find(part) for part in order]
     assert -1 not in places, message
     assert [f"arm.yaml:{n}" in message for n in (2, 5, 6, 7, 8)] == [True] * 5
-    # Body a is broken, but it exists: nobody is told that it does not.
+    # Body a is broken, but it exists: no problem says that it does not.
     assert "parent 'a'" not in message
 
 

@@ -76,7 +76,7 @@ def test_dissipation_follows_the_option_and_dropped_terms_are_noted(
     )
     stated = [element.coefficient if isinstance(element, sf.Damper) else element.dynamic for element in elements]  # type: ignore[union-attr]
     np.testing.assert_allclose(np.array(stated, dtype=float), [0.5, 0.2][: len(elements)], rtol=DIGITS)
-    told = {
+    reported = {
         '; damping of joints ignored (dissipation="viscous" of load, or --dissipation viscous, keeps it)': kept
         == "none",
         'dry friction of joints ignored (dissipation="all" of load, or --dissipation all, keeps it)': kept
@@ -84,7 +84,7 @@ def test_dissipation_follows_the_option_and_dropped_terms_are_noted(
         "dry friction of joints smoothed below 0.001 rad/s or m/s, so that what it holds at rest creeps": kept == "all",
     }
     notes = "; ".join(["", *system.notes])
-    assert {text: text in notes for text in told} == told
+    assert {text: text in notes for text in reported} == reported
 
 
 @pytest.mark.parametrize("suffix", FILES)

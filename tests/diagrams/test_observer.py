@@ -1,4 +1,4 @@
-"""A run is looked at while it goes on: what is told is what is recorded, and stops fall on instants."""
+"""A run is observed while it goes on: observers get what is recorded, and stops fall on instants."""
 
 from __future__ import annotations
 
@@ -24,20 +24,20 @@ def lag() -> sf.Diagram:
 
 
 class Stops:
-    """Keeps what it is told, and stops at some times; at the last one it ends the run."""
+    """Keeps what it gets, and stops at some times; at the last one it ends the run."""
 
     signals = ("x.y",)
 
     def __init__(self, times: list[float], ends: bool = False) -> None:
         self.times, self.ends = list(times), ends
         self.stopped: list[float] = []
-        self.told: list[tuple[Array, Array]] = []
+        self.reported: list[tuple[Array, Array]] = []
 
     def stop(self) -> float:
         return self.times[0] if self.times else math.inf
 
     def see(self, t: float, times: Array, values: Mapping[str, Array]) -> None:
-        self.told.append((times, values["x.y"]))
+        self.reported.append((times, values["x.y"]))
         if self.times and t >= self.times[0] - 1e-9:
             self.stopped.append(t)
             del self.times[0]
@@ -62,6 +62,6 @@ def test_observers_see_the_recorded_values_and_change_no_bit(compiled: bool) -> 
     # A run that is ended at a stop keeps what it has.
     assert_allclose(ended.t[-1], 0.5, rtol=1e-12)  # type: ignore[attr-defined]
     assert_array_equal(ended["x.y"], alone["x.y"][: len(ended["x.y"])])
-    for told, record in ((watch.told, run), (ending.told, ended)):
-        assert_array_equal(np.concatenate([t for t, _ in told]), record.t)  # type: ignore[attr-defined]
-        assert_array_equal(np.concatenate([x for _, x in told]), record["x.y"])
+    for reported, record in ((watch.reported, run), (ending.reported, ended)):
+        assert_array_equal(np.concatenate([t for t, _ in reported]), record.t)  # type: ignore[attr-defined]
+        assert_array_equal(np.concatenate([x for _, x in reported]), record["x.y"])

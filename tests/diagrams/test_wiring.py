@@ -129,11 +129,11 @@ def test_outlets_of_parts_stay_where_outlets_are_assigned_anew() -> None:
     innermost.add(Counter(name="ticks", period=0.1))
     innermost.outlets = {"n": "ticks.n"}
     inner.include("count", innermost)
-    inner.outlets = {"told": "count.n"}
+    inner.outlets = {"shown": "count.n"}
     diagram.include("part", inner)
-    diagram.outlets = {"all": "part.told"}
+    diagram.outlets = {"all": "part.shown"}
     run = sf.Simulation(diagram).run(0.5, dt=0.1, record=0.1)
-    for signal in ("all", "part.told", "part.count.n", "part/count/ticks.n"):
+    for signal in ("all", "part.shown", "part.count.n", "part/count/ticks.n"):
         assert run[signal].tolist() == [0, 1, 2, 3, 4, 5], signal
 
 

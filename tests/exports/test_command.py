@@ -31,9 +31,9 @@ def test_export_writes_a_package(tmp_path: Path) -> None:
         ],
     )
     assert done.exit_code == 0, done.output
-    told = json.loads(done.output)
-    assert told["name"] == "four_bar"
-    assert all(Path(file).is_file() for file in told["files"])
+    reported = json.loads(done.output)
+    assert reported["name"] == "four_bar"
+    assert all(Path(file).is_file() for file in reported["files"])
     assert "1.2" in (tmp_path / "out" / "four_bar_plant.c").read_text()
 
 

@@ -216,8 +216,8 @@ def test_numbers_signals_and_formulas_of_inlets_run_both_ways() -> None:
 def test_open_diagrams_that_cannot_leave_are_refused(tmp_path: Path) -> None:
     diagram = rates()
     diagram.add(Spoken(name="spoken", period=0.01, heard=[]), x="pd.effort")
-    diagram.add(Spoken(name="told", period=0.01, heard=[]), x="pd.effort")
-    with pytest.raises(sf.ExportError, match="block 'spoken' calls Python; block 'told' calls Python"):
+    diagram.add(Spoken(name="heard", period=0.01, heard=[]), x="pd.effort")
+    with pytest.raises(sf.ExportError, match="block 'spoken' calls Python; block 'heard' calls Python"):
         sf.export(diagram, "c", tmp_path / "c")
     unknown, twice, same = rates(), rates(), rates()
     unknown.inlet_ports.clear()

@@ -41,7 +41,7 @@ def crank() -> sf.Diagram:
 
 
 def loop() -> sf.Diagram:
-    """Constraints, and nothing that is sampled: multipliers are told all the same."""
+    """Constraints, and nothing that is sampled: multipliers are outputs nevertheless."""
     diagram, plant = sf.Diagram("loop"), crank().models["plant"]
     model = sf.compile(plant.system)
     q = [plant.start[name] for name in model.names.q]
@@ -103,15 +103,15 @@ def test_the_program_prints_the_values_of_python(case: str, tmp_path: Path) -> N
     done = subprocess.run([program, "1.1", "0.05"], capture_output=True, text=True)
     assert done.returncode == 0, done.stderr
     header, *rows = done.stdout.splitlines()
-    told = np.array([[float(x) for x in row.split(",")] for row in rows])
+    reported = np.array([[float(x) for x in row.split(",")] for row in rows])
     moved = sf.Simulation(diagram).run(1.1, dt=1e-3, record=0.05)
     if case != "ball":  # Whose crossings are recorded, too.
         want = np.concatenate([np.asarray(moved[name]).reshape(len(moved.t), -1) for name in outputs], axis=1)
         assert header.split(",")[0] == "t" and len(header.split(",")) == 1 + want.shape[1]
-        assert np.abs(told[:, 0] - moved.t).max() < 1e-12
-        assert np.abs(told[:, 1:] - want).max() < 1e-8 * max(1.0, np.abs(want).max())
+        assert np.abs(reported[:, 0] - moved.t).max() < 1e-12
+        assert np.abs(reported[:, 1:] - want).max() < 1e-8 * max(1.0, np.abs(want).max())
     else:
-        assert told[-1, 2] == moved["ball.bounces"][-1] == 2
+        assert reported[-1, 2] == moved["ball.bounces"][-1] == 2
 
 
 def switching() -> tuple[sf.Diagram, list[str]]:

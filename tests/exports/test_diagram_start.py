@@ -37,7 +37,7 @@ def test_an_exported_diagram_keeps_its_stated_start(angle: float, tmp_path: Path
 
 
 def test_limits_and_first_steps_are_noted(tmp_path: Path) -> None:
-    """Limits are data, as in packages of models; a start outside them is told as a run tells it."""
+    """Limits are data, as in packages of models; a start outside them is noted as by a run."""
     joint = sf.Joint("a", "revolute", axis=(0, 1, 0), limits=sf.Limits(-0.5, 0.5, 2.0, 3.0))
     system = sf.System("limited", (sf.RigidBody("b", joint, sf.Inertia(1.0, (0.3, 0, 0))),))
     within, beyond = (sf.export(moved(system, {"a": angle}), "c", tmp_path / str(angle)).notes for angle in (0.1, 1.0))

@@ -58,6 +58,6 @@ def test_other_machines_move_as_python_does(tmp_path: Path, target: str) -> None
     need(EMULATORS[target])
     run(*exported(tmp_path, target), "-o", "example", *sources(tmp_path), "-lm", cwd=tmp_path)
     lines = [line.split() for line in run(EMULATORS[target], "./example", "0.2", "--fast", cwd=tmp_path).splitlines()]
-    told = {words[0]: np.array(list(map(float, words[1:]))) for words in lines if words[0] in ("selftest", "q")}
-    assert told["selftest"][0] < 1e-9
-    assert relative(told["q"], trajectory("four_bar", 0.2).q[-1]) < LIBM
+    reported = {words[0]: np.array(list(map(float, words[1:]))) for words in lines if words[0] in ("selftest", "q")}
+    assert reported["selftest"][0] < 1e-9
+    assert relative(reported["q"], trajectory("four_bar", 0.2).q[-1]) < LIBM

@@ -176,14 +176,14 @@ def test_cached_models_report_the_same_routes(tmp_path: Path, monkeypatch: pytes
     """Cold, warm, and before the first call; a warm model has generated nothing to be called."""
     monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))
     ahead = sf.compile(MODELS["cart_pole"])
-    told_ahead = ahead.routes[FORWARD]
+    stated_ahead = ahead.routes[FORWARD]
     assert dict(ahead.routes) == {} and len(ahead.routes) == 0
     cold = sf.compile(MODELS["cart_pole"])
     cold.forward_dynamics([0.1, 0.2], [0.0, 0.0], np.zeros(cold.nu))
     monkeypatch.setattr(units, "model_source", lambda *_, **__: pytest.fail("a known model was generated again"))
     warm = sf.compile(MODELS["cart_pole"])
     warm.forward_dynamics([0.1, 0.2], [0.0, 0.0], np.zeros(warm.nu))
-    assert dict(warm.routes) == dict(cold.routes) == {FORWARD: told_ahead}
+    assert dict(warm.routes) == dict(cold.routes) == {FORWARD: stated_ahead}
     assert str(warm.routes).startswith(f"{FORWARD}\n  acceleration of trees: ")
 
 

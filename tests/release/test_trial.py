@@ -163,8 +163,8 @@ def test_the_base_installation_names_the_missing_extra(base: Environment, comman
     corpus = ROOT / "reference_models/arm.urdf", ROOT / "reference_models/rigid/cart_pole.yaml"
     for source, name in zip(corpus, ("robot.urdf", "arm.yaml"), strict=True):
         (base.folder / name).write_text(source.read_text())
-    told = "".join(base.run("bash", "-c", command, fails=code).split())  # Frames of messages break lines.
-    assert f"symofros[{extra}]" in told.replace("│", "") and "Traceback" not in told
+    reported = "".join(base.run("bash", "-c", command, fails=code).split())  # Frames of messages break lines.
+    assert f"symofros[{extra}]" in reported.replace("│", "") and "Traceback" not in reported
 
 
 @pytest.mark.parametrize("command", ["symofros validation --help", "python -m symofros.validation --help"])

@@ -290,6 +290,6 @@ def test_a_passage_within_a_step_is_dated_to_a_sixteenth_of_it(t0: float) -> Non
 
 
 def test_progress_is_passed_to_a_function(pendulum: sf.Model) -> None:
-    told: list[float] = []
-    sf.simulate(pendulum, [0.5], t_end=2.0, dt=1e-4, progress=told.append)
-    assert told == sorted(told) and told[-1] == pytest.approx(2.0)
+    reported: list[float] = []
+    sf.simulate(pendulum, [0.5], t_end=2.0, dt=1e-4, progress=reported.append)
+    assert reported == sorted(reported) and reported[-1] == pytest.approx(2.0)

@@ -1,4 +1,4 @@
-"""The list of the harness's commands, which is told without importing any of them."""
+"""The list of the harness's commands, which is printed without importing any of them."""
 
 import pytest
 

@@ -29,7 +29,7 @@ class Verdict:
         kind: "agreed"; "refused" where we said ourselves that there is no good answer; "undecided" where the
             independent route has none; "contradicted".
         said: Sentence on it.
-        quantity: What is contradicted: finds of one attack are told apart by it.
+        quantity: What is contradicted: it distinguishes finds of one attack.
         share: Error over its bound; above one where contradicted.
     """
 
@@ -94,7 +94,7 @@ class Attack:
     judge: Callable[[Scene], Verdict]
 
     def verdict(self, scene: Scene) -> Verdict:
-        """The verdict on a scene, with exceptions that are no refusals told as contradictions."""
+        """The verdict on a scene, with exceptions that are no refusals taken as contradictions."""
         try:
             with np.errstate(all="ignore"):
                 return self.judge(scene)

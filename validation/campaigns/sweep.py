@@ -110,8 +110,8 @@ class Sweeper:
             lowest = modes.frequencies[:count]
             frequencies[row, : len(lowest)] = lowest
             outcomes.append(DONE)
-            told = dict.fromkeys((*rest.notes, *modes.notes))
-            notes[row] = [*unlike_oscillations(modes.eigenvalues[:count]), *told]
+            found = dict.fromkeys((*rest.notes, *modes.notes))
+            notes[row] = [*unlike_oscillations(modes.eigenvalues[:count]), *found]
         return frequencies, outcomes, notes
 
     def _motions(self, par: Array, u: Array) -> tuple[Array, list[str], list[list[str]]]:

@@ -1,6 +1,6 @@
 """Beams against finite elements: the rate at which meshes converge, and the orders by which the two theories differ.
 
-M and h of elements that move as our beams do are compared like any engine's, after extrapolation. What is told beside
+M and h of elements that move as our beams do are compared like any engine's, after extrapolation. What is stated beside
 that (docs/theory/elements.md): that each kind of element converges at the rate that it is extrapolated by; that elastic
 forces differ by the third power of the deflection, which is what our strain energy leaves out, and not at all where
 the beam is a geometrically exact rod; that rotary inertia, whose spins are of second order in ours, differs by the

@@ -89,7 +89,7 @@ DOUBLE, SINGLE = 2.0**-52, 2.0**-23
 CALLS = 16
 
 
-# The name by which plug-ins know it that were written before `contract.conventions.Difference` was told apart from it.
+# The name in plug-ins that were written before `contract.conventions.Difference` was distinguished from it.
 Difference = Convention
 
 

@@ -43,7 +43,7 @@ def _race(name: str, models: Sequence[str], states: Sequence[int], turns: int) -
             for count in states:
                 yield "doing", (label, f"{function}, {counted(count, 'state')}")
                 rows = partial(race.rows, name, subject, offers, function, count, turns)
-                yield from _told(name, function, rows)
+                yield from _messages(name, function, rows)
 
 
 def _race_in_node(name: str, models: Sequence[str], states: Sequence[int], turns: int) -> Iterator[Message]:
@@ -60,12 +60,12 @@ def _race_in_node(name: str, models: Sequence[str], states: Sequence[int], turns
         if ran["mujoco"]:
             yield "version", (in_node.PEER, ran["mujoco"])
         for one in ran["races"]:
-            yield from _told(name, one["function"], partial(in_node.rows, subject, one, turns))
+            yield from _messages(name, one["function"], partial(in_node.rows, subject, one, turns))
     if not ran["mujoco"]:
         yield "absent", Absent(name, in_node.PEER, "Node finds no such package", in_node.INSTALL_PEER)
 
 
-def _told(name: str, function: str, rows: Callable[[race.Fail], Iterator[Row]]) -> Iterator[Message]:
+def _messages(name: str, function: str, rows: Callable[[race.Fail], Iterator[Row]]) -> Iterator[Message]:
     """The rows of one race, and the sides that it has left out, which are known at its end."""
     failed: list[tuple[str, str, str, str]] = []
     for row in rows(lambda who, reason: failed.append((name, function, who, reason))):
@@ -89,14 +89,14 @@ def _version(peer: Peer) -> tuple[str, str]:
 
 def _present(environment: Environment) -> Generator[Message, None, list[Peer]]:
     """The peers that are installed; one that takes part in several ways is missed once."""
-    told, present = set(), []
+    missed, present = set(), []
     for peer in environment.peers:
         missing = _missing(peer)
         if not missing:
             yield "version", _version(peer)
             present.append(peer)
-        elif peer.module not in told:
-            told.add(peer.module)
+        elif peer.module not in missed:
+            missed.add(peer.module)
             yield "absent", Absent(environment.name, peer.name.partition(",")[0], missing, peer.install)
     return present
 

@@ -118,7 +118,7 @@ def published(package: str) -> list[str]:
 
 
 def day_of(requirement: str) -> str:
-    """The day after a release was published, by the lock file that uv writes; "" where it can't be told.
+    """The day after a release was published, by the lock file that uv writes; "" where it is unknown.
 
     Args:
         requirement: The release, as NAME==VERSION.

@@ -41,7 +41,7 @@ class MomentumObserver(Block):
         """Motion q, v and inputs u (the model's defaults where nothing is connected) in; r (nv) out."""
         record = environment.model(self.model)
         if record.nc:
-            rule = "forces of constraints are not told from those outside"
+            rule = "forces of constraints are not distinguished from those outside"
             raise refuse(self.name, "a model with constraints", self.model, rule, "take a model of the tree")
         if np.ndim(self.gain):
             numbers(self.name, "gain", self.gain, (len(record.v_names),))

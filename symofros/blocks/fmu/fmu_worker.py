@@ -119,7 +119,7 @@ class Unit:
         file: The unit.
         folder: A new folder, which the unit may use as long as it runs.
         kind: "co_simulation" or "model_exchange".
-        rtol: Relative tolerance of the solver of a model exchange, and what a co-simulation is told.
+        rtol: Relative tolerance of the solver of a model exchange, and the one that a co-simulation gets.
     """
 
     def __init__(self, file: str, folder: str, kind: str, rtol: float) -> None:

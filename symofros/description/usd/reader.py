@@ -70,10 +70,10 @@ def read_usd(path: str | os.PathLike[str], options: ImportOptions = DEFAULT_OPTI
     )
     if bad:
         raise DescriptionError(bad)
-    return reading_of(_Importer(file, stage, options).tree(), notes=tuple(_told(stage["warnings"])))
+    return reading_of(_Importer(file, stage, options).tree(), notes=tuple(_notes(stage["warnings"])))
 
 
-def _told(warnings: Sequence[str]) -> Iterator[str]:
+def _notes(warnings: Sequence[str]) -> Iterator[str]:
     """Note of OpenUSD's first warning while it read the file, and of the number of others."""
     if warnings:
         more = f" (and {len(warnings) - 1} more)" if len(warnings) > 1 else ""

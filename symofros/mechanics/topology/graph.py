@@ -229,7 +229,7 @@ class _Checker:
         """Problems of a joint's symbols that others have already; the free ones are marked as taken.
 
         A coordinate door may have the name of the rate of one called oor, which formulas alone could confuse; they are
-        refused where they do. Inputs, which rates of prescribed joints are, and speeds of their own are told by names.
+        refused where they do. Inputs, which rates of prescribed joints are, and their own speeds are listed by names.
         """
         shared = role == "speed" and not joint.prescribed and not joint.traits.quasi_velocities
         for symbol in symbols:

@@ -10,7 +10,7 @@ from symofros.description.values import Rotation
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.run_time import rotations_of
 
-# A matrix of ten digits and more is told apart from its rotation by rounding alone.
+# A matrix of ten digits and more differs from its rotation by rounding alone.
 FEW_DIGITS = 1e-9
 # A whole turn, stated with six digits.
 _TURN = 2.0 * math.pi * (1.0 + 1e-6)

@@ -22,7 +22,7 @@ from symofros.studio.differences.mechanism import Body, Mechanism, Move, moved
 _MOST_PAIRS = 2500
 # What speaks against a pair of joints. A name weighs less than any fact: files name twins as they like.
 _KIND, _COUNT, _LINE, _MASS, _CENTER, _JOINT_NAME, _LINK_NAME, _ENTRIES = 4.0, 3.0, 2.0, 1.0, 1.0, 0.5, 0.25, 0.1
-# Joints beyond a part, by which ways are told apart that all agree at the part itself.
+# Joints beyond a part, that distinguish ways which all agree at the part itself.
 _DEPTH = 4
 # Rounding of an inertia whose mass centre is moved, of its mass times the square of the mechanism's size.
 _STEINER = 1e-14
@@ -195,7 +195,7 @@ class Alignments:
             x: Part of the first file that the joint carries.
             y: Part of the second.
             T: Displacement of what carries the joints.
-            depth: Number of joints beyond, by which ways are told apart that all agree so far.
+            depth: Number of joints beyond, that distinguish ways which all agree so far.
         """
         m, n = self.a.parts[x].move, self.b.parts[y].move
         assert m is not None and n is not None

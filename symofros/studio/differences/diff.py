@@ -40,7 +40,7 @@ class MechanismDiff:
         first: Name of the first.
         second: Name of the second.
         differences: What differs, parents first; those that change kinematics, M or g before the rest. Of several that
-            change kinematics, what they change of M and g is told of all together.
+            change kinematics, their effect on M and g is stated for all together.
         errors: "kinematics", "M", "g" -> largest relative difference over random postures; empty where joints of one
             have no counterpart in the other.
         coordinates: Coordinates that differ: name in the first, name in the second, sign, offset; q = sign q' + offset.
@@ -109,11 +109,11 @@ class MechanismDiff:
         for entry, items in rest.items():
             many = f" and {len(items) - 1} more" if len(items) > 1 else ""
             here, there = (_text(value) for value in (items[0].here, items[0].there))
-            told = f"{entry} of {items[0].subject}{many}: {here} in the first, {there} in the second"
-            lines += [*_wrapped(f"- {told} (changes {', '.join(items[0].changes)})", "  ")]
+            difference = f"{entry} of {items[0].subject}{many}: {here} in the first, {there} in the second"
+            lines += [*_wrapped(f"- {difference} (changes {', '.join(items[0].changes)})", "  ")]
         if self.errors:
-            told = ", ".join(f"{name} {error:.1g}" for name, error in self.errors.items())
-            lines += [*_wrapped(f"over {POSTURES} random postures they differ by: {told} (relative)", "  ")]
+            largest = ", ".join(f"{name} {error:.1g}" for name, error in self.errors.items())
+            lines += [*_wrapped(f"over {POSTURES} random postures they differ by: {largest} (relative)", "  ")]
         if self.matched:
             pairs = ", ".join(f"{a} = {b}" for a, b in self.matched[:_LISTED])
             more = f", ... ({len(self.matched)} in all)" if len(self.matched) > _LISTED else ""

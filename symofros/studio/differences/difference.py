@@ -34,7 +34,7 @@ class Difference:
             "springs"; empty for nothing that can be observed.
         names: Names of link and joint in the second file.
         places: "file:line" of the link or joint in both files, where they are known.
-        likelier: Which file is likelier right: 0, 1; None where that can't be told.
+        likelier: Which file is likelier right: 0, 1; None where neither is.
         reason: Why.
     """
 

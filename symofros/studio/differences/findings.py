@@ -138,8 +138,8 @@ class Findings:
     def _unlike(self, one: Body, two: Body, T: Pose) -> int:
         """How many of mass, mass centre and inertia of two bodies differ."""
         close = self.close
-        alike = close.numbers(one.mass, two.mass), close.points(one.center, moved(T, two.center))
-        return 3 - sum((*alike, close.inertias(one.inertia, T.R @ two.inertia @ T.R.T, one.mass)))
+        agree = close.numbers(one.mass, two.mass), close.points(one.center, moved(T, two.center))
+        return 3 - sum((*agree, close.inertias(one.inertia, T.R @ two.inertia @ T.R.T, one.mass)))
 
     def _place_bodies(self, c: int, d: int, T: Pose) -> list[tuple[Body, Body]]:
         """A part's bodies and their counterparts; where each of the second file lies."""

@@ -21,7 +21,7 @@ _TIP = "tip"
 
 
 def felt(system: sf.System, frame: str, start: dict[str, float], **options: float) -> tuple[sf.DiagramRun, np.ndarray]:
-    """A run with a wrench that the observer is not told of, and the generalized force of it (n, nv)."""
+    """A run with a wrench unknown to the observer, and the generalized force of it (n, nv)."""
     diagram = sf.Diagram("felt")
     diagram.add_model("m", system, start)
     diagram.add(Constant(name="push", value=_PUSH))

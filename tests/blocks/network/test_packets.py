@@ -63,7 +63,7 @@ def test_malformed_packets_are_counted_and_dropped(data: bytes) -> None:
         ((0, 0, 1, 1, 0), 0, 0, 3, 1),
         ((0, 3, 1, 1), 1, 1, 1, 3),
         ((5, 4), 0, 1, 0, 5),  # Before the first: nothing was counted as lost.
-        ((0, 5000, 1), 4999, 1, 0, 5000),  # Too far behind to be told from a duplicate.
+        ((0, 5000, 1), 4999, 1, 0, 5000),  # So far behind that it may be a duplicate.
         ((2**32 - 1, 0, 1), 0, 0, 0, 1),  # Numbers wrap.
         ((2**32 - 2, 1, 2**32 - 1), 1, 1, 0, 1),
     ],

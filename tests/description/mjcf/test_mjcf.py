@@ -242,7 +242,7 @@ def test_sizes_of_mjcf_models_are_bounded(tmp_path: Path, monkeypatch: pytest.Mo
 
 
 def test_nothing_is_left_in_the_user_s_folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
-    """MuJoCo logs its warnings into the current folder, unless told otherwise."""
+    """MuJoCo logs its warnings into the current folder, by default."""
     monkeypatch.chdir(tmp_path)
     assert "not a finite number" in faults(write(tmp_path, world(NOT_A_NUMBER)))
     assert [path.name for path in tmp_path.iterdir()] == ["model.xml"]

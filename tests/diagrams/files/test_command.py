@@ -92,9 +92,9 @@ def test_inlets_are_given_by_the_command_line(tmp_path: Path) -> None:
     )
     common = "simulate", path, "0.1", "-o", tmp_path / "run.npz"
     given = "--input", "q=atan2(t,1),0.5", "--input", "v=0", "--input", "goal=1"
-    told = run(*common, *given)
-    assert told.exit_code == 0, told.output
+    result = run(*common, *given)
+    assert result.exit_code == 0, result.output
     with np.load(tmp_path / "run.npz") as arrays:
         np.testing.assert_allclose(arrays["pd.effort"][-1], [2 * (1 - np.arctan(0.1)), 1.0], rtol=1e-12)
-    told = run(*common, *given[:4])
-    assert told.exit_code == 2 and "inlet 'goal' is not given" in " ".join(told.output.split())
+    result = run(*common, *given[:4])
+    assert result.exit_code == 2 and "inlet 'goal' is not given" in " ".join(result.output.split())

@@ -59,8 +59,8 @@ def test_inlets_survive_saving(tmp_path: Path) -> None:
     sf.save_diagram(d, tmp_path / "d.yaml")
     again = sf.load_diagram(tmp_path / "d.yaml")
     assert again.inlet_ports == d.inlet_ports and again.inlets == {name: tuple(to) for name, to in d.inlets.items()}
-    told = sf.Simulation(again).run(0.01, inputs={"q": [0.1, 0.2], "v": 0.0, "desired": 0.0, "offset": "t"})
-    assert told.unit("offset") == "rad/s" and told["effort"].shape[1:] == (2,)
+    reported = sf.Simulation(again).run(0.01, inputs={"q": [0.1, 0.2], "v": 0.0, "desired": 0.0, "offset": "t"})
+    assert reported.unit("offset") == "rad/s" and reported["effort"].shape[1:] == (2,)
 
 
 @pytest.mark.parametrize(

@@ -365,9 +365,9 @@ def test_a_run_says_which_signals_it_has() -> None:
     """As a mapping does: by a name of an output, of an outlet, of a block with one; other names raise nothing."""
     diagram = sf.Diagram("named")
     diagram.add(Counter(name="ticks", period=0.1))
-    diagram.outlets = {"told": "ticks.n"}
+    diagram.outlets = {"shown": "ticks.n"}
     run = sf.Simulation(diagram).run(0.2, dt=0.1, record=0.1)
-    assert all(name in run and run.get(name).tolist() == [0, 1, 2] for name in ("ticks.n", "ticks", "told"))
+    assert all(name in run and run.get(name).tolist() == [0, 1, 2] for name in ("ticks.n", "ticks", "shown"))
     for name in ("ticks.m", "later.y", "", 3):
         assert name not in run and run.get(name, "none") == "none"  # type: ignore[arg-type]
 

@@ -197,7 +197,7 @@ def test_a_loop_has_them_beside_its_constraints() -> None:
 
 
 def test_events_know_them() -> None:
-    """A formula names a state, an action sets one; friction by a factor of a state, which is told, too."""
+    """A formula names a state, an action sets one; friction by a factor of a state, an output, too."""
     fades: Any = "exp(-T)"
     warm = sf.Friction(1.0, viscous=0.1, factor=fades)
     rate: Any = "dx*dx - 0.2*T"

@@ -92,17 +92,17 @@ def test_no_step_exceeds_the_stop_time(made: Any) -> None:
 def test_a_beam_is_judged_again_after_a_reset(made: Any, kind: str) -> None:
     """A run with a remark, after a reset one without, after another one again with it."""
     path = str(made(LIMP, True, method="dopri5").path)
-    about, told = fmpy.read_model_description(path), []
+    about, reported = fmpy.read_model_description(path), []
     with heard() as (logger, log):
         unit = instantiate_fmu(fmpy.extract(path), about, fmi_type=kind, logger=logger)
         for g in (0.5, 0.1, 0.5):
             log.clear()
             given: Any = {"start_values": {"par.g": g}, "fmu_instance": unit, "fmi_type": kind}
             fmpy.simulate_fmu(path, stop_time=1.0, output_interval=0.02, logger=logger, **given)
-            told.append([line for line in log if "second-order theory errs" in line])
+            reported.append([line for line in log if "second-order theory errs" in line])
             unit.reset()
         unit.freeInstance()
-    assert told[0] == told[2] and len(told[0]) == 1 and not told[1]
+    assert reported[0] == reported[2] and len(reported[0]) == 1 and not reported[1]
 
 
 def test_parameter_derivatives_are_available_during_initialisation(made: Any) -> None:

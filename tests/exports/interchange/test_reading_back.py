@@ -31,8 +31,8 @@ def joints(system: sf.System) -> list[sf.Joint]:
 
 def noted(done: sf.Exported, words: str, name: str) -> bool:
     """Whether a note with these words names this joint."""
-    told = [note.partition(": ")[2] for note in done.notes if words in note]
-    return any(f", {name}, " in f", {names}, " for names in told)
+    reported = [note.partition(": ")[2] for note in done.notes if words in note]
+    return any(f", {name}, " in f", {names}, " for names in reported)
 
 
 def linear_damping(joint: sf.Joint, k: int) -> float:
@@ -58,7 +58,7 @@ def test_mjcf_is_read_back_by_mujoco(tmp_path: Path, seed: str) -> None:
     order = np.zeros(model.nv, dtype=int)
     for joint in joints(system):
         at = [model.names.v.index(name) for name in speed_names(joint)]
-        order[at] = _told_by_mujoco(done, engine, data, joint, model, q, v)
+        order[at] = _read_by_mujoco(done, engine, data, joint, model, q, v)
     mujoco.mj_forward(engine, data)
     M = np.zeros((engine.nv, engine.nv))
     mujoco.mj_fullM(engine, data, M)
@@ -75,7 +75,7 @@ def test_mjcf_is_read_back_by_mujoco(tmp_path: Path, seed: str) -> None:
     assert [name for name in missing if not noted(done, carriers, name)] == []
 
 
-def _told_by_mujoco(
+def _read_by_mujoco(
     done: sf.Exported,
     engine: mujoco.MjModel,
     data: mujoco.MjData,
@@ -176,11 +176,11 @@ def test_urdf_is_read_back_by_pinocchio_and_our_reader(tmp_path: Path, seed: str
     close(back.mass_matrix(again)[np.ix_(ours, ours)], wanted, SAME)
     read = {joint.name: joint for joint in joints(sf.load(done.files[0]))}
     for joint in joints(system):
-        _told_by_urdf(done, engine, read, joint)
+        _read_by_urdf(done, engine, read, joint)
     assert {*model.names.frames} - {system.bodies[0].name} <= {*back.names.frames} | {"world"}
 
 
-def _told_by_urdf(done: sf.Exported, engine: pinocchio.Model, read: dict[str, sf.Joint], joint: sf.Joint) -> None:
+def _read_by_urdf(done: sf.Exported, engine: pinocchio.Model, read: dict[str, sf.Joint], joint: sf.Joint) -> None:
     """Compare limits and damping of a joint with what its readers found."""
     dampers = [e for e in joint.elements if isinstance(e, sf.Damper)]
     for k, name in enumerate(speed_names(joint)):

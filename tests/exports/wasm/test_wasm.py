@@ -86,9 +86,9 @@ def test_a_wasm_run_matches_strict_native_code(answers: dict[str, Any], tmp_path
     sources = sorted(path.name for path in tmp_path.glob("*.c"))
     run("gcc", "-std=c99", "-O1", "-ffp-contract=off", *sources, "-lm", "-o", "example", cwd=tmp_path)
     lines = [line.split() for line in run("./example", "0.25", "0.001", "--fast", cwd=tmp_path).splitlines()]
-    told = {words[0]: np.array(list(map(float, words[1:]))) for words in lines if words[0] in ("q", "v")}
+    reported = {words[0]: np.array(list(map(float, words[1:]))) for words in lines if words[0] in ("q", "v")}
     for name in "qv":
-        np.testing.assert_array_equal(doubles(answers["end"][name]), told[name])
+        np.testing.assert_array_equal(doubles(answers["end"][name]), reported[name])
 
 
 @pytest.mark.tools

@@ -22,7 +22,7 @@ OPERANDS = np.random.default_rng(7).uniform(0.05, 0.95, 200).tolist()
 
 @pytest.mark.parametrize("name", [name for name, op in FUNCTIONS.items() if op.arity == 1])
 def test_a_constant_is_the_nearest_double(name: str) -> None:
-    """Against 60 digits, from half of which the nearest double to a value between two could be told."""
+    """Against 60 digits, from half of which the nearest double to a value between two is known."""
     with mpmath.workdps(60):
         function = getattr(mpmath, {"abs": "fabs"}.get(name, name))
         for x in OPERANDS:

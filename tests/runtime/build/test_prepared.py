@@ -41,9 +41,9 @@ class Compiling:
         given = arguments if "--functions" in arguments else (*arguments, "--functions", FUNCTIONS)
         done = CliRunner().invoke(app, ["compile", *map(str, given), "--json"])
         assert done.exit_code == 0, done.output
-        told: dict[str, Any] = json.loads(done.stdout)
-        assert told.pop("seconds") >= 0.0
-        return told
+        reported: dict[str, Any] = json.loads(done.stdout)
+        assert reported.pop("seconds") >= 0.0
+        return reported
 
 
 @pytest.fixture

@@ -1,4 +1,4 @@
-"""Whoever waits for a function that is generated at its first call is told so; a known one is silent."""
+"""Whoever waits for a function that is generated at its first call gets a message; a known one is silent."""
 
 from __future__ import annotations
 

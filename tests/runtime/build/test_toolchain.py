@@ -1,4 +1,4 @@
-"""Compilers that are none, write nothing, or never end: each is told in four parts."""
+"""Compilers that are none, write nothing, or never end: each is reported in four parts."""
 
 from __future__ import annotations
 
@@ -104,15 +104,17 @@ def test_flags_of_gcc_are_given_to_gcc_alone(
     monkeypatch: pytest.MonkeyPatch, tmp_path: Path, cache: Path, says: str, gcc: int, flags: tuple[str, ...]
 ) -> None:
     """A compiler that writes down its arguments."""
-    told = tmp_path / "told"
-    answers = f'case "$*" in *--version*) echo "{says}";; *) echo "$*" >> {told}; for x; do :; done; echo > "$x";; esac'
+    reported = tmp_path / "reported"
+    answers = (
+        f'case "$*" in *--version*) echo "{says}";; *) echo "$*" >> {reported}; for x; do :; done; echo > "$x";; esac'
+    )
     monkeypatch.setenv("CC", str(script(tmp_path, SHELL + f"{answers}\n")))
     monkeypatch.delenv("SYMOFROS_CFLAGS", raising=False)
     named = find_toolchain()
     assert named is not None and named.gcc == gcc
     build_library("int x;\n", "", named)
     build_library("int z;\n", "", named, flags=("-O1",))
-    calls = [set(GCC_FLAGS) & set(line.split()) for line in told.read_text().splitlines()]
+    calls = [set(GCC_FLAGS) & set(line.split()) for line in reported.read_text().splitlines()]
     assert calls == [set(flags), set()]  # The default flags, and those that a model states.
 
 

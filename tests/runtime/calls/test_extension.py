@@ -164,8 +164,8 @@ def test_batches_have_the_bits_of_the_general_way(forward: PlainCall, m: sf.Mode
     q, v = (np.array(x) for x in zip(*(m.random_state(rng) for _ in range(n)), strict=True))
     u = rng.normal(size=(n, m.nu))
     given = {"q": q, "v": v, "u": u, "t": rng.normal(size=n)}
-    for alike in range(16):
-        same = {group for k, group in enumerate(given) if alike >> k & 1}
+    for pattern in range(16):
+        same = {group for k, group in enumerate(given) if pattern >> k & 1}
         inputs = {group: (x[0].item() if group == "t" else x[:1]) if group in same else x for group, x in given.items()}
         expected = m._call_batch("dynamics", "", inputs, m.parameter_values)
         found = forward(inputs)

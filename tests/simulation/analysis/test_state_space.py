@@ -25,7 +25,7 @@ SOLID = sf.Inertia(1.5, (0.1, -0.2, 0.05), (0.3, 0.4, 0.5))
 
 
 def driven() -> sf.System:
-    """An arm on a base that moves as it is told."""
+    """An arm on a base that moves as prescribed."""
     base = sf.RigidBody("base", sf.Joint("sweep", "revolute", prescribed=True), SOLID, (sf.Frame("e", (0.5, 0, 0)),))
     arm = sf.RigidBody(
         "arm",

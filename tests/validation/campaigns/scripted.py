@@ -1,4 +1,4 @@
-"""Batches that do as told, in a module that workers import quickly; files that are damaged."""
+"""Batches that follow a script, in a module that workers import quickly; files that are damaged."""
 
 from __future__ import annotations
 
@@ -13,7 +13,7 @@ import pyarrow.parquet as parquet
 
 @dataclass(frozen=True)
 class Scripted:
-    """A batch that does as told."""
+    """A batch that follows a script."""
 
     number: int
     deed: str = "work"

@@ -9,8 +9,8 @@ from validation.mechanics.extrapolation import Refined
 STEPS = 0.5 ** np.arange(5)
 
 
-def refined(power: int, told: tuple[int, ...]) -> Refined:
-    return Refined("mass", told, [np.array([1.0 + 0.1 * h**power]) for h in STEPS])
+def refined(power: int, powers: tuple[int, ...]) -> Refined:
+    return Refined("mass", powers, [np.array([1.0 + 0.1 * h**power]) for h in STEPS])
 
 
 @pytest.mark.parametrize(("power", "status"), [(4, "agree"), (3, "disagree"), (2, "disagree")])

@@ -168,6 +168,6 @@ def test_an_engine_that_disagrees_alone_is_the_suspect_and_where_several_do_our_
 def test_an_unreadable_model_is_refused_in_its_parts_and_tags_are_shown(capsys: pytest.CaptureFixture[str]) -> None:
     reason = "r.urdf:1: no links; found: 0 other elements; rule: at least one <link>; remedy: run xacro"
     show(compose(as_data(SETTINGS, [failed("r", "load", reason)], 1.0, ())))
-    told = [line.strip(" •") for line in capsys.readouterr().out.splitlines()]
+    reported = [line.strip(" •") for line in capsys.readouterr().out.splitlines()]
     expected = "r, symofros: load: r.urdf:1: no links", "found: 0 other elements", "rule: at least one <link>"
-    assert [line for line in told if line][:4] == [*expected, "remedy: run xacro"]
+    assert [line for line in reported if line][:4] == [*expected, "remedy: run xacro"]

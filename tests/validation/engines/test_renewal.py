@@ -30,8 +30,8 @@ NAMES = ("revolute x", "prismatic oblique", "ball")
 @pytest.mark.parametrize("engine", ["exudyn"])
 def test_two_processes_give_the_cells_of_one(engine: str, monkeypatch: pytest.MonkeyPatch) -> None:
     require(engine, "validation")
-    every, told, asked = {name: tree_of(name) for name in NAMES}, list[str](), dict.fromkeys(NAMES, (engine,))
-    run = SimpleNamespace(advance=told.append, expect=lambda *_: None)
+    every, reported, asked = {name: tree_of(name) for name in NAMES}, list[str](), dict.fromkeys(NAMES, (engine,))
+    run = SimpleNamespace(advance=reported.append, expect=lambda *_: None)
     with Worker() as worker:
         reach = Opened({engine: OWN[engine]}, worker=worker)
         found = []
@@ -40,19 +40,19 @@ def test_two_processes_give_the_cells_of_one(engine: str, monkeypatch: pytest.Mo
             cells = renewal.all_cells(run, reach, every, asked, {}, parts.Finished(False))  # type: ignore[arg-type]
             found.append([one.cell for one in cells])
     assert found[0] == found[1] and {cell.model for cell in found[0]} == set(NAMES)
-    assert sorted(told) == sorted(2 * NAMES)
+    assert sorted(reported) == sorted(2 * NAMES)
 
 
 def test_an_interrupted_run_goes_on_where_it_stopped(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     require("mujoco", "validation")
     monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path / "cache"))
     monkeypatch.setattr(os, "cpu_count", lambda: 1)
-    every, told, run, stops = {name: tree_of(name) for name in NAMES}, list[str](), Run(TOPIC), {NAMES[1]}
+    every, reported, run, stops = {name: tree_of(name) for name in NAMES}, list[str](), Run(TOPIC), {NAMES[1]}
     plugins = {"mujoco": OWN["mujoco"]}
     ask = asker(plugins, None)  # type: ignore[arg-type]  # In this process.
 
     def interrupted(question: Tree, engines: Collection[str]) -> list[Judged]:
-        told.append(question.name)
+        reported.append(question.name)
         if question.name in stops:
             stops.clear()
             raise KeyboardInterrupt
@@ -70,11 +70,11 @@ def test_an_interrupted_run_goes_on_where_it_stopped(tmp_path: Path, monkeypatch
     with pytest.raises(KeyboardInterrupt):
         cells()
     found = cells()
-    assert told == [NAMES[0], NAMES[1], NAMES[1], NAMES[2]]
+    assert reported == [NAMES[0], NAMES[1], NAMES[1], NAMES[2]]
     assert [one.cell for one in found] == [one.cell for name in NAMES for one in ask(every[name], plugins)]
-    told.clear()  # The report has them: whoever asks once more measures once more.
+    reported.clear()  # The report has them: whoever asks once more measures once more.
     assert len(cells()) == len(found)
-    assert told == list(NAMES)
+    assert reported == list(NAMES)
 
 
 def _crashed(engine: str, model: str) -> Judged:

@@ -75,18 +75,18 @@ def test_partial_runs_leave_the_whole_report(
 def test_an_update_asks_what_is_new_or_changed_and_engines_that_are_named(
     few: None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
 ) -> None:
-    told: list[dict[str, list[str]]] = []
-    monkeypatch.setattr(renewal, "all_cells", lambda *given: told.append(dict(given[3])) or [])
+    reported: list[dict[str, list[str]]] = []
+    monkeypatch.setattr(renewal, "all_cells", lambda *given: reported.append(dict(given[3])) or [])
     path = tmp_path / "reports" / "engines.json"
     path.parent.mkdir()
     path.write_text(stored(), encoding="utf-8")
     monkeypatch.chdir(tmp_path)
 
     def asked(*options: str) -> dict[str, list[str]]:
-        told.clear()
+        reported.clear()
         result = CliRunner().invoke(app, ["engines", "--update", *options])
         assert result.exit_code in (0, 1), result.output
-        return told[0]
+        return reported[0]
 
     def change(**changed: Any) -> None:
         path.write_text(json.dumps(json.loads(path.read_text()) | changed))

@@ -27,7 +27,7 @@ def test_a_framework_that_differs_or_fails_is_reported_and_not_timed(
     subject: Subject, monkeypatch: pytest.MonkeyPatch
 ) -> None:
     right = native(subject, "forward_dynamics", 3).results()
-    told: list[tuple[str, str]] = []
+    reported: list[tuple[str, str]] = []
 
     def broken(function: str, states: int) -> Side:
         raise KeyError("no such\nfunction")
@@ -41,12 +41,14 @@ def test_a_framework_that_differs_or_fails_is_reported_and_not_timed(
     ]
     clock = itertools.count(0, 1_000_000)
     monkeypatch.setattr(race, "perf_counter_ns", lambda: next(clock))
-    rows = list(race.rows("jax", subject, offers, "forward_dynamics", 3, 2, lambda *said: told.append(said)))
+    rows = list(race.rows("jax", subject, offers, "forward_dynamics", 3, 2, lambda *said: reported.append(said)))
     assert [row.who for row in rows] == [NATIVE, OURS]
     # Each call takes a millisecond of that clock, so that four are a turn: a quarter of one each, of three states.
     assert all(row.least == pytest.approx(1e6 / 4 / 3) and row.ratio == 1.0 and row.error == 0.0 for row in rows)
-    assert [who for who, _ in told] == ["coarse", "narrow", "broken"]
-    assert "1.0e-06" in told[0][1] and "inf" in told[1][1] and told[2][1] == "KeyError: 'no such\\nfunction'"
+    assert [who for who, _ in reported] == ["coarse", "narrow", "broken"]
+    assert (
+        "1.0e-06" in reported[0][1] and "inf" in reported[1][1] and reported[2][1] == "KeyError: 'no such\\nfunction'"
+    )
 
 
 @pytest.mark.parametrize("states", [1, 3])

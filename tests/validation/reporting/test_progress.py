@@ -13,7 +13,7 @@ STEPS, SECONDS_A_STEP = 1000, 0.1
 def test_a_file_gets_a_line_of_progress_each_ten_seconds(
     monkeypatch: pytest.MonkeyPatch, capsys: pytest.CaptureFixture[str]
 ) -> None:
-    """However short the steps are; what is in all, and the last step, are always told."""
+    """However short the steps are; what is in all, and the last step, are always printed."""
     run = Run(Topic("work", "Correctness", "Is it done?", lambda _: Report("Work", "Done.", True, blocks=())))
     now = [0.0]
     monkeypatch.setattr(Run, "seconds", property(lambda _: now[0]))
@@ -23,5 +23,5 @@ def test_a_file_gets_a_line_of_progress_each_ten_seconds(
         run.advance(f"scene {step}")
     first, *lines = capsys.readouterr().err.splitlines()
     assert first.endswith("work: 1000 in all") and lines[-1].endswith("[1000/1000] scene 999")
-    told = [float(line.split()[0]) for line in lines[:-1]]
-    assert told == [10.0 * k for k in range(1, 10)]
+    reported = [float(line.split()[0]) for line in lines[:-1]]
+    assert reported == [10.0 * k for k in range(1, 10)]

@@ -29,10 +29,10 @@ MESSAGES: list[Message] = [
 
 
 def test_messages_of_a_worker_become_a_record() -> None:
-    record, told = Record([entry(peer_time=1.0)]), []
+    record, reported = Record([entry(peer_time=1.0)]), []
     for message in MESSAGES:
-        take(message, JOB, record, lambda *what: told.append(what))
-    assert told == [("panda", "dynamics", ""), ("panda", "dynamics", "building sympy")]
+        take(message, JOB, record, lambda *what: reported.append(what))
+    assert reported == [("panda", "dynamics", ""), ("panda", "dynamics", "building sympy")]
     assert [x.peer_time[1] for x in record.entries] == [5.0], "the old figure is replaced"
     assert record.costs == [made()] and record.skipped == [("panda", "dynamics", "sympy", "too large")]
 

@@ -43,9 +43,9 @@ def test_the_truth_files_are_current(name: str, tmp_path: Path) -> None:
 def test_the_manifest_states_every_file(tmp_path: Path) -> None:
     manifest = stored("manifest.json")
     assert set(manifest["models"]) == set(MODELS) and set(manifest["functions"]) == set(FUNCTIONS)
-    for name, told in manifest["files"].items():
+    for name, stated in manifest["files"].items():
         content = (FOLDER / name).read_bytes()
-        assert (len(content), hashlib.sha256(content).hexdigest()) == (told["bytes"], told["sha256"]), name
+        assert (len(content), hashlib.sha256(content).hexdigest()) == (stated["bytes"], stated["sha256"]), name
     listed = {*manifest["files"], "manifest.json"}
     there = {str(path.relative_to(FOLDER)) for path in FOLDER.rglob("*") if path.is_file()}
     assert {name for name in there - listed if "readers" not in name and name != "README.md"} == set()

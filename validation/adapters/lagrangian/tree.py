@@ -132,9 +132,9 @@ class Symbols:
             "s": sum(n for n, own in zip(nq, free, strict=True) if not own),
             "ds": sum(n for n, own in zip(nv, free, strict=True) if not own),
         }
-        likewise = {"q": "q", "e": "v", "v": "v", "a": "v", "s": "s", "es": "ds", "ds": "ds", "dds": "ds", "seen": "v"}
+        taken_as = {"q": "q", "e": "v", "v": "v", "a": "v", "s": "s", "es": "ds", "ds": "ds", "dds": "ds", "seen": "v"}
         return Symbols(
-            **{name: ca.SX.sym(name, sizes[as_]) for name, as_ in likewise.items()}, u=ca.SX.sym("u", inputs)
+            **{name: ca.SX.sym(name, sizes[as_]) for name, as_ in taken_as.items()}, u=ca.SX.sym("u", inputs)
         )
 
     def function(self, name: str, output: SX) -> Any:

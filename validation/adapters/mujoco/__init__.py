@@ -11,6 +11,6 @@ DIFFERENCES = (
     Difference("mujoco", "free joint on a moving parent", "one joint", "three slides along P, then a ball joint"),
     Difference("mujoco", "frame velocity and acceleration", "(linear; angular)", "(angular; linear)"),
     Difference("mujoco", "frame acceleration", "d/dt of the frame velocity", "with -gravity added to the linear part"),
-    Difference("mujoco-urdf", "angles in the model", "radians", "degrees, unless the compiler is told otherwise"),
+    Difference("mujoco-urdf", "angles in the model", "radians", "degrees, unless the compiler's option says otherwise"),
     Difference("mujoco-mjcf", "potential energy", "of what moves", "of everything with mass, moving or not"),
 )

@@ -27,7 +27,7 @@ ENTRIES = 1e-4
 INDEPENDENT = 1e-3
 # A state within this deviation from its constraints, over L, counts as one that has drifted (constraints.md, (11a)).
 # What is left there of a row that repeats others on them is of the order of the deviation: up to twice that much can't
-# be told from a condition of its own.
+# be distinguished from a condition of its own.
 DRIFTED, LEFT = 2e-3, 2.0
 Form = Literal["multipliers", "null_space"]
 _FUNCTIONS = ("mass_matrix", "bias", "generalized_force", "constraint_jacobian", "constraint_bias")

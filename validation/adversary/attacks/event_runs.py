@@ -133,7 +133,7 @@ def judge(scene: Scene) -> Verdict:
     # Of a motion that is late the last crossings may lie behind the end.
     least = int(np.count_nonzero(exact < span - allowed))
     missed = abs(len(found) - min(max(len(found), least), len(exact)))
-    number = compared("number of events that are missed or told twice", missed, 0.5, claim)
+    number = compared("number of events that are missed or reported twice", missed, 0.5, claim)
     if missed or not len(found):
         return number
     errors = np.abs(found - exact[: len(found)])

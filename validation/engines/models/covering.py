@@ -190,8 +190,8 @@ def _sensors(options: Mapping[str, str], levels: Mapping[str, str]) -> str:
     text = OPTIONS["sensors"][options["sensors"]]
     kind = {"<f": "pos", "<v": "vel", "<a": "frc"}.get(text[:2], "")
     # Without actuation MuJoCo leaves the speeds of actuators at zero, which its documentation does not say.
-    is_told = levels["drive"] != "not driven" and (kind != "vel" or options["flag"] != "no actuation")
-    more = [f'<actuator{kind} actuator="m{{k}}"/>'] if kind and is_told else []
+    is_stated = levels["drive"] != "not driven" and (kind != "vel" or options["flag"] != "no actuation")
+    more = [f'<actuator{kind} actuator="m{{k}}"/>'] if kind and is_stated else []
     if kind in ("pos", "vel"):
         more += [f'<tendon{kind} tendon="t{{k}}"/>'] if levels["line"] != "no tendon" else []
         ball = {"pos": "ballquat", "vel": "ballangvel"}[kind]

@@ -42,7 +42,9 @@ def _pendulum() -> sf.Model:
     return sf.compile(sf.System("pendulum", (sf.RigidBody("bob", hinge, sf.Inertia(1.0, (0, 0, -1.0))),)), TAPE)
 
 
-def _told(name: str, run: sf.Trajectory, *expected: tuple[str, tuple[float, ...]], kind: str = "finished") -> Cell:
+def _notes_cell(
+    name: str, run: sf.Trajectory, *expected: tuple[str, tuple[float, ...]], kind: str = "finished"
+) -> Cell:
     """The cell of a run: each expected note is there with its numbers, and no other.
 
     Args:
@@ -76,29 +78,33 @@ def on_steps(_: Scene) -> Iterator[Cell]:
     turned = [1e-3, 0.0, 0.0, math.sqrt(1.0 - 1e-6)]
     for of, stiff, q in (("", _slide(sf.Spring(w**2)), [1.0]), (" of a ball that is tied", _tied_ball(w), turned)):
         run = sf.simulate(stiff, q, t_end=0.5, dt=h, method="rk4")
-        yield _told(f"a step{of} beyond stability", run, (beyond, (2 * math.sqrt(2) / w, w, factor)))
-        yield _told(f"a step{of} within it", sf.simulate(stiff, q, t_end=0.1, dt=5e-4, method="rk4"))
+        yield _notes_cell(f"a step{of} beyond stability", run, (beyond, (2 * math.sqrt(2) / w, w, factor)))
+        yield _notes_cell(f"a step{of} within it", sf.simulate(stiff, q, t_end=0.1, dt=5e-4, method="rk4"))
     pendulum = _pendulum()
     run = sf.simulate(pendulum, [1.0], t_end=2.0, dt=0.02, method="euler")
     appeared = float(run.energy[-1] - run.energy[0])
-    yield _told("a method that feeds", run, (rf"'euler' is stable at no step .*; {_NUMBER} J appeared", (appeared,)))
+    yield _notes_cell(
+        "a method that feeds", run, (rf"'euler' is stable at no step .*; {_NUMBER} J appeared", (appeared,))
+    )
     run = sf.simulate(pendulum, [1.0], t_end=60.0, dt=0.1, method="euler")
     found = [one for one in run.outcome.notes if "energy changes by" in one]
     gained = float(np.ptp(run.energy))
-    told = [float(one) for note in found for one in re.findall(rf"energy changes by {_NUMBER} J", note)]
-    yield Cell("notes: energy that nobody gives", off(np.array(told), np.array([gained])), 0.05)
+    noted = [float(one) for note in found for one in re.findall(rf"energy changes by {_NUMBER} J", note)]
+    yield Cell("notes: energy that nobody gives", off(np.array(noted), np.array([gained])), 0.05)
     run = sf.simulate(pendulum, [3.1], t_end=6.0, dt=0.25, method="rk4")
-    yield _told("steps that decide", run, (r"steps of 0.25 s do not determine the motion: half of that", ()))
+    yield _notes_cell("steps that decide", run, (r"steps of 0.25 s do not determine the motion: half of that", ()))
     fine = sf.simulate(pendulum, [3.1], t_end=6.0, dt=0.01, method="rk4")
-    yield _told("steps that do not", fine)
+    yield _notes_cell("steps that do not", fine)
     loose = sf.simulate(pendulum, [3.1], t_end=6.0, method="dopri5", rtol=0.3, atol=0.3)
     said = any("tolerances" in note or "passes over" in note for note in loose.outcome.notes)
     yield Cell("notes: loose tolerances", float(not said), SAME, "; ".join(loose.outcome.notes))
-    yield _told("tight tolerances", sf.simulate(pendulum, [3.1], t_end=6.0, method="dopri5", rtol=1e-8, atol=1e-9))
+    yield _notes_cell(
+        "tight tolerances", sf.simulate(pendulum, [3.1], t_end=6.0, method="dopri5", rtol=1e-8, atol=1e-9)
+    )
     spring = _slide(sf.Spring(4.0))
     run = sf.simulate(spring, [1e-3], t_end=5.0, method="dopri5", rtol=1e-6, atol=0.1)
     over = r"the step from t = .* passes over what acts within it: steps of .* change the motion there .*max_step"
-    yield _told("a step that passes over", run, (over, ()))
+    yield _notes_cell("a step that passes over", run, (over, ()))
 
 
 def on_inputs(_: Scene) -> Iterator[Cell]:
@@ -109,10 +115,10 @@ def on_inputs(_: Scene) -> Iterator[Cell]:
         exact = 1.0 if kind == "hold" else 0.5 * 0.06 * 100.0
         run = sf.simulate(driven, [0.0], t_end=1.0, dt=0.1, u={"F": samples}, method="rk4")
         missed = abs(made - exact)
-        told = [float(x) for note in run.outcome.notes for x in re.findall(rf"impulse is off by {_NUMBER},", note)]
-        yield Cell(f"notes: samples within steps, {kind}", off(np.array(told), np.array([missed])), _TOLD)
+        noted = [float(x) for note in run.outcome.notes for x in re.findall(rf"impulse is off by {_NUMBER},", note)]
+        yield Cell(f"notes: samples within steps, {kind}", off(np.array(noted), np.array([missed])), _TOLD)
     samples = sf.Signal([0.0, 0.1, 0.2, 1.0], [0.0, 100.0, 0.0, 0.0], "hold")
-    yield _told("samples at steps", sf.simulate(driven, [0.0], t_end=1.0, dt=0.1, u={"F": samples}, method="rk4"))
+    yield _notes_cell("samples at steps", sf.simulate(driven, [0.0], t_end=1.0, dt=0.1, u={"F": samples}, method="rk4"))
     late = sf.Signal([0.0, 0.05, 0.55], [0.0, 1.0, -1.0], "hold")
     run = sf.simulate(driven, [0.0], t_end=1.0, dt=0.1, u={"F": late}, method="rk4")
     said = any("misjudge" in note for note in run.outcome.notes)
@@ -121,9 +127,9 @@ def on_inputs(_: Scene) -> Iterator[Cell]:
     run = sf.simulate(pulsed, [0.0], [1.0], t_end=0.5, dt=0.01, method="rk4")
     given = 1000 * 5e-4 * math.sqrt(math.pi)
     pattern = rf"misjudge forces by formulas of time, .*: at t = {_NUMBER} s .* are off by {_NUMBER} %"
-    yield _told("a force within steps", run, (pattern, (0.26, 100 * given / 1.0)))
+    yield _notes_cell("a force within steps", run, (pattern, (0.26, 100 * given / 1.0)))
     smooth = _slide(effort="10*exp(-((t - 0.25)/0.1)^2)")
-    yield _told("a force of many steps", sf.simulate(smooth, [0.0], [1.0], t_end=0.5, dt=0.01, method="rk4"))
+    yield _notes_cell("a force of many steps", sf.simulate(smooth, [0.0], [1.0], t_end=0.5, dt=0.01, method="rk4"))
 
 
 def on_motions(_: Scene) -> Iterator[Cell]:
@@ -132,15 +138,15 @@ def on_motions(_: Scene) -> Iterator[Cell]:
     run = sf.simulate(limited, [0.0], [3.0], t_end=1.0, dt=0.1)
     places = rf"'x' leaves its limits, -1 to 1, at t = {_NUMBER} s, by up to {_NUMBER}:"
     speeds = rf"the speed of 'x' exceeds its limits, {_NUMBER} to {_NUMBER}, at t = [\d.]+ s, by up to {_NUMBER}:"
-    yield _told("limits that are left", run, (places, (0.4, 2.0)), (speeds, (-2.0, 2.0, 1.0)))
-    yield _told("limits that are kept", sf.simulate(limited, [0.0], [0.5], t_end=1.0, dt=0.1))
+    yield _notes_cell("limits that are left", run, (places, (0.4, 2.0)), (speeds, (-2.0, 2.0, 1.0)))
+    yield _notes_cell("limits that are kept", sf.simulate(limited, [0.0], [0.5], t_end=1.0, dt=0.1))
     driven = sf.simulate(_slide(sf.Damper(-2.0)), [0.0], [1.0], t_end=10.0, dt=1e-3, method="rk4")
-    yield _told("speeds that a force drives", driven)
+    yield _notes_cell("speeds that a force drives", driven)
     yield Cell("growth by a force", float(driven.v[-1, 0] / math.exp(20.0)) - 1.0, 1e-6)
     creeping = _slide(sf.Friction(1.0, minimum_velocity=1e-3), effort="0.5")
     run = sf.simulate(creeping, [0.0], t_end=1.0, dt=1e-3)
     said = rf"'x' ends at {_NUMBER}, where friction carries {_NUMBER} of the {_NUMBER} that it reaches"
-    yield _told("a joint that creeps", run, (said, (float(run.v[-1, 0]), 0.5, 1.0)))
+    yield _notes_cell("a joint that creeps", run, (said, (float(run.v[-1, 0]), 0.5, 1.0)))
     flat = _parallelogram()
     run = sf.simulate(flat, [0.3, -0.3, 0.3], [-2.0, 2.0, -2.0], t_end=0.4, dt=1e-3)
     passed = [
@@ -149,7 +155,7 @@ def on_motions(_: Scene) -> Iterator[Cell]:
     at = float(np.interp(0.0, -run.q[:, 0], run.t))
     yield Cell("notes: a singular posture", off(np.array(passed), np.array([at])), 0.02, "; ".join(run.outcome.notes))
     away = sf.simulate(flat, [1.3, -1.3, 1.3], [-0.2, 0.2, -0.2], t_end=0.1, dt=1e-3)
-    yield _told("a regular posture", away)
+    yield _notes_cell("a regular posture", away)
 
 
 def _parallelogram() -> sf.Model:

@@ -130,7 +130,9 @@ def judge(maps: Maps) -> Verdict:
             1e-13,
             "above what the assembly may leave, 1e-12",
         ),
-        Finding("runs that come to their end and are wrong", float(silent), 0.0, reason="a misfit is refused or told"),
+        Finding(
+            "runs that come to their end and are wrong", float(silent), 0.0, reason="a misfit is refused or reported"
+        ),
     )
     statement = (
         "Rows that repeat others are found by their rank and cost nothing: with 3, 5 and 4 rows of rank 2, 2 and "

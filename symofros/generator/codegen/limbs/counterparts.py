@@ -164,10 +164,12 @@ class Counterparts:
         graph, op = self._graph, self._graph.op[node]
         if op not in (ADD, MUL):
             return False
-        alike = [[user for user in self._users[x] if graph.op[user] == op] for x in (operand, *self._partners[operand])]
-        if len(set(map(len, alike))) > 1:
+        matching = [
+            [user for user in self._users[x] if graph.op[user] == op] for x in (operand, *self._partners[operand])
+        ]
+        if len(set(map(len, matching))) > 1:
             return False
-        nodes = tuple(users[alike[0].index(node)] for users in alike)
+        nodes = tuple(users[matching[0].index(node)] for users in matching)
         at = 0 if abs(graph.args[node][0]) == operand else 1
         operands = [graph.args[node]]
         for other, partner in zip(nodes[1:], self._partners[operand], strict=True):

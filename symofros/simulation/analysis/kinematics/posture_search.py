@@ -174,12 +174,12 @@ class PostureSearch:
         found = [self._closed_and_descended(end.q, used) for end in ends]
         missed = [self._missed(posture) for posture in found]
         least = min(missed)
-        alike = [
+        equal_ones = [
             posture
             for posture, (broken, miss) in zip(found, missed, strict=True)
             if broken == least[0] and miss <= least[1] * (1.0 + _ALIKE)
         ]
-        best = min(alike, key=lambda posture: self._distance(posture.q))
+        best = min(equal_ones, key=lambda posture: self._distance(posture.q))
         if self._met(best.q) and not best.wrong_way_round:
             return replace(self._nearest_to_rest([best.q]), steps=best.steps)
         return replace(best, distance=0.0 if self.rest is None else self._distance(best.q))

@@ -49,8 +49,8 @@ def diagnose(
     bendings = amplified_in_motion(stepper.bendings, stepper.amplified_bendings, stepper.model, states, stepper.par)
     status = recorded.status
     run = ExaminedRun(stepper, settings, start, states, int(stepper.run.steps))
-    told = () if status == Status.BEYOND_THEORY else bendings  # Else the reason says it.
-    notes = (*_notes_on_the_way(run), *bending_notes(told), *_pace_notes(run))
+    noted = () if status == Status.BEYOND_THEORY else bendings  # Else the reason says it.
+    notes = (*_notes_on_the_way(run), *bending_notes(noted), *_pace_notes(run))
     fault = input_fault(stepper) if status < 0 else ""
     return outcome_of(run, status, bendings, notes, fault, interrupted=recorded.interrupted), bendings
 
@@ -67,8 +67,8 @@ def diagnose_one(
         fault: Input that is no number, in words; "" for none.
         interrupted: Whether Ctrl-C ended it.
     """
-    told = () if status == Status.BEYOND_THEORY else bendings
-    notes = (*_notes_on_the_way(run), *bending_notes(told))
+    noted = () if status == Status.BEYOND_THEORY else bendings
+    notes = (*_notes_on_the_way(run), *bending_notes(noted))
     return outcome_of(run, status, bendings, notes, fault, interrupted=interrupted)
 
 
@@ -129,8 +129,8 @@ def outcome_of(
     mode, remarks = examine_run(meant, ended_well=status >= 0, failed=failed) if meant.steps else (None, ())
     notes, most_bent = (*notes, *remarks), largest_bending(bendings)
     end = _End(run, status, interrupted, most_bent, notes, fault, failed, mode)
-    told_by = (_stopped, _without_direction, _grown, _stuck, _beyond_theory, _unfinished, _violating)
-    for said in told_by:
+    explanations = (_stopped, _without_direction, _grown, _stuck, _beyond_theory, _unfinished, _violating)
+    for said in explanations:
         outcome = said(end)
         if outcome is not None:
             return outcome

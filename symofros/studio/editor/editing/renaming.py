@@ -157,7 +157,7 @@ def _symbols(data: Any, at: Path, new: dict[str, str]) -> list[Edit]:
     """Names exchanged in all formulas, and where speeds are keys.
 
     Raises:
-        EditError: A new name is taken, and could not be told from the other one afterwards; or can't be printed.
+        EditError: A new name is taken, and could not be distinguished afterwards; or can't be printed.
     """
     clash = sorted(set(new.values()) & (taken(data) - new.keys()))
     if clash:

@@ -103,8 +103,8 @@ class LiveObserver:
         self.signals = list(dict.fromkeys(split(name)[0] for name in self._names))
         self.sources = list(map(wired.output, self.signals))
         self.ended = self._paused = False
-        plots_told = [{**plot, "curves": curves} for plot, curves in self.shown]
-        tell.say({"samples": {"plots": plots_told, "t": [], "values": []}})
+        sent_plots = [{**plot, "curves": curves} for plot, curves in self.shown]
+        tell.say({"samples": {"plots": sent_plots, "t": [], "values": []}})
 
     def stop(self) -> float:
         """The next breakpoint."""

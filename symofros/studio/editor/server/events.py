@@ -51,9 +51,9 @@ class Events:
         self._loop = asyncio.get_running_loop()
         queue: asyncio.Queue[str] = asyncio.Queue(MAX_WAITING)
         self._listeners.add(queue)
-        return self._told(queue, present)
+        return self._sent(queue, present)
 
-    async def _told(self, queue: asyncio.Queue[str], present: tuple[str, ...]) -> AsyncIterator[str]:
+    async def _sent(self, queue: asyncio.Queue[str], present: tuple[str, ...]) -> AsyncIterator[str]:
         try:
             yield ": listening\n\n"
             for said in present:

@@ -33,5 +33,5 @@ class CameraFollow:
             return
         self._at = position
         for page in self._server.get_clients().values():
-            with suppress(AssertionError), page.atomic():  # Viser asserts that a page has told where its camera is.
+            with suppress(AssertionError), page.atomic():  # Viser asserts that a page has reported its camera.
                 page.camera.position = page.camera.position + shift

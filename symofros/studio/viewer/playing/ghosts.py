@@ -67,7 +67,7 @@ def ghosts_of(mechanism: Mechanism, runs: Mapping[str, Played], drawing: Drawing
         SymofrosError: There are more than colors, or events change in a run how the mechanism looks.
     """
     if len(runs) > len(_COLORS):
-        found, rule = f"{len(runs)} runs", f"{len(_COLORS)} ghosts at most: more can't be told apart"
+        found, rule = f"{len(runs)} runs", f"{len(_COLORS)} ghosts at most: more can't be distinguished"
         raise SymofrosError(Problem("view: too many ghosts", found, rule, "show those that differ most"))
     return tuple(
         _ghost(mechanism, name, motion_of(mechanism.model, run), color, drawing)

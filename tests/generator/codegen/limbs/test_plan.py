@@ -62,7 +62,7 @@ def test_legs_of_a_quadruped_share_vectors(function: str) -> None:
     stated, nodes = program.functions[0], needed_nodes(program.graph, program.functions[0].edges())
     made = LimbPlan(program.graph, nodes, {}, stated.edges(), program.limbs)
     assert made.spared > 0.4 * len(nodes)
-    # All four legs are one row each: lanes are told apart by their last numbers alone.
+    # All four legs are one row each: lanes differ by their last numbers alone.
     assert {vector.width for vector in made.vectors} == {4}
 
 

@@ -143,8 +143,8 @@ def test_both_methods_refuse_the_same_massless_speeds() -> None:
     tip = sf.RigidBody("b", sf.Joint("q2", "revolute", "a"), None, waive=("massless_tip",))
     light = sf.System("s", (sf.RigidBody("a", sf.Joint("q1", "revolute"), SOLID), tip))
     between = sf.RigidBody("a", sf.Joint("q1", "revolute"), None)
-    alike = sf.System("s", (between, sf.RigidBody("b", sf.Joint("q2", "revolute", "a"), SOLID)))
-    for system, words in ((light, "speed 'q2' moves no mass"), (alike, "speed 'q1' moves nothing that")):
+    same_mass = sf.System("s", (between, sf.RigidBody("b", sf.Joint("q2", "revolute", "a"), SOLID)))
+    for system, words in ((light, "speed 'q2' moves no mass"), (same_mass, "speed 'q1' moves nothing that")):
         assert words in massless(system, "articulated")
         assert massless(system, "articulated") == massless(system, "factors")
 

@@ -193,8 +193,8 @@ def test_exceeded_speed_and_effort_limits_are_reported(limits: dict[str, float],
     alone = sf.simulate(m, t_end=1.0, u={"s": "10*t"}, dt=1e-2, method="rk4").outcome
     batch = sf.simulate_batch(m, np.zeros((2, 1)), t_end=1.0, u={"s": "10*t"}, dt=1e-2, output=1e-2).outcome(1)
     for outcome in (alone, batch):
-        told = [note for note in outcome.notes if "exceeds its limits" in note]
-        assert len(told) == bool(said) and all(said in note for note in told), told
+        reported = [note for note in outcome.notes if "exceeds its limits" in note]
+        assert len(reported) == bool(said) and all(said in note for note in reported), reported
 
 
 def test_speeds_in_diagrams_are_held_against_limits() -> None:

@@ -128,7 +128,7 @@ def test_every_pose_that_exists_is_found_whatever_the_joints(name: str) -> None:
 
 @pytest.mark.parametrize("seed", range(2))
 def test_a_guess_that_leads_to_the_target_is_not_left(seed: int) -> None:
-    """The answer is that of the guess alone, to the last bit, and is told to be of one start."""
+    """The answer is that of the guess alone, to the last bit, and is stated to be of one start."""
     m, rng = sf.compile(MODELS["rx90"], FUNCTIONS), np.random.default_rng(seed)
     wanted = m.random_state(rng)[0]
     p, R = m.frame_pose("tool", wanted)

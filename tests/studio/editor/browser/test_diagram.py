@@ -204,7 +204,7 @@ def wire(page: Page, source: str, target: str) -> None:
 def test_ports_of_diagram_blocks_follow_their_fields(opened: Serve, page: Page, tmp_path: Path) -> None:
     shutil.copy(steps.PENDULUM, tmp_path / "arm.yaml")
     opened("picked.yaml", content=PICKED)
-    # The block gets its output when it is told which entries it picks.
+    # The block gets its output when its entries are chosen.
     steps.open_window(page, "blocks/choice")
     steps.fill(page, "Entries", "q1")
     steps.accept(page)

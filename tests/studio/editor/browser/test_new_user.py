@@ -152,6 +152,6 @@ def test_a_new_user_builds_plays_and_exports_a_controlled_arm(
         expect(steps.results(page).get_by_text("program/main.c")).to_be_visible(timeout=steps.JOB)
     # What was exported is a program that tells the same end.
     run = sf.Simulation(sf.load_diagram(tmp_path / "held.yaml")).run(3.0)
-    told = subprocess.run([build(tmp_path / "program", "program"), "3", "3"], capture_output=True, text=True)
-    end = [float(x) for x in told.stdout.splitlines()[-1].split(",")]
+    reported = subprocess.run([build(tmp_path / "program", "program"), "3", "3"], capture_output=True, text=True)
+    end = [float(x) for x in reported.stdout.splitlines()[-1].split(",")]
     assert end[1:] == pytest.approx([*run.q[-1], *run.v[-1]], abs=1e-7)

@@ -1,4 +1,4 @@
-"""Runs of diagrams in worker processes: what is told meanwhile is what comes of it; orders are followed."""
+"""Runs of diagrams in worker processes: messages meanwhile agree with the result; orders are followed."""
 
 from __future__ import annotations
 
@@ -23,13 +23,13 @@ Told = list[tuple[str, dict[str, Any]]]
 
 
 @pytest.fixture
-def told() -> Told:
+def reported() -> Told:
     return []
 
 
 @pytest.fixture
-def jobs(told: Told) -> Iterator[Jobs]:
-    jobs = Jobs(lambda kind, data: told.append((kind, data)))
+def jobs(reported: Told) -> Iterator[Jobs]:
+    jobs = Jobs(lambda kind, data: reported.append((kind, data)))
     yield jobs
     jobs.close()
 
@@ -38,40 +38,40 @@ def started(jobs: Jobs, folder: Path, text: str = TEXT, **options: Any) -> Job:
     return jobs.start("run", {"file": str(folder / "d.yaml"), "text": text, "options": options})
 
 
-def samples(told: Told) -> list[dict[str, Any]]:
-    return [data for kind, data in told if kind == "samples"]
+def samples(reported: Told) -> list[dict[str, Any]]:
+    return [data for kind, data in reported if kind == "samples"]
 
 
-def paused(told: Told) -> bool:
-    return any(data["progress"].get("paused") for kind, data in told if kind == "job")
+def paused(reported: Told) -> bool:
+    return any(data["progress"].get("paused") for kind, data in reported if kind == "job")
 
 
 @pytest.mark.parametrize(("order", "end"), [("resume", 1.0), ("stop", 0.5)])
 def test_a_run_waits_at_its_breakpoint_and_follows_the_order(
-    jobs: Jobs, told: Told, tmp_path: Path, order: str, end: float
+    jobs: Jobs, reported: Told, tmp_path: Path, order: str, end: float
 ) -> None:
     job = started(jobs, tmp_path, mode="interpreted", breakpoints=[0.5])
     waiting = time.monotonic() + 60.0
-    while not paused(told) and time.monotonic() < waiting:
+    while not paused(reported) and time.monotonic() < waiting:
         time.sleep(0.02)
-    first, *rest = samples(told)
+    first, *rest = samples(reported)
     assert [plot["title"] for plot in first["plots"]] == ["Path", "wave.rate"] and first["plots"][0]["xy"]
     assert rest[-1]["t"][-1] == pytest.approx(0.5) and not job.over.is_set()
     jobs.order(job.key, order)
     assert job.over.wait(60.0)
     assert job.state == "done" and job.result["outcome"]["ok"], job.error
     assert job.result["t"][-1] == pytest.approx(end)
-    # What was told meanwhile is what comes of it.
-    assert [t for part in samples(told) for t in part["t"]] == job.result["t"]
+    # Messages meanwhile agree with the result.
+    assert [t for part in samples(reported) for t in part["t"]] == job.result["t"]
     curves = {curve["name"]: curve for plot in job.result["plots"] for curve in plot["curves"]}
     names = list(dict.fromkeys(curve["name"] for plot in first["plots"] for curve in plot["curves"]))
     for i, name in enumerate(names):
-        assert [x for part in samples(told)[1:] for x in part["values"][i]] == curves[name]["values"]
+        assert [x for part in samples(reported)[1:] for x in part["values"][i]] == curves[name]["values"]
     assert curves["wave.rate"]["unit"] == "rad/s"
 
 
 @pytest.mark.slow
-def test_a_real_time_run_pauses_and_stops_on_request(jobs: Jobs, told: Told, tmp_path: Path) -> None:
+def test_a_real_time_run_pauses_and_stops_on_request(jobs: Jobs, reported: Told, tmp_path: Path) -> None:
     job = started(jobs, tmp_path, TEXT.replace("t_end: 1", "t_end: 60"), realtime=1.0)
 
     def wait_until(holds: Callable[[], bool]) -> None:
@@ -80,16 +80,16 @@ def test_a_real_time_run_pauses_and_stops_on_request(jobs: Jobs, told: Told, tmp
             assert time.monotonic() < end and not job.over.is_set(), job.error
             time.sleep(0.02)
 
-    wait_until(lambda: any(part["t"] for part in samples(told)))
+    wait_until(lambda: any(part["t"] for part in samples(reported)))
     jobs.order(job.key, "pause")
-    wait_until(lambda: paused(told))
-    before = samples(told)[-1]["t"][-1]
+    wait_until(lambda: paused(reported))
+    before = samples(reported)[-1]["t"][-1]
     time.sleep(0.3)
-    assert samples(told)[-1]["t"][-1] == before  # Time stands still.
+    assert samples(reported)[-1]["t"][-1] == before  # Time stands still.
     jobs.order(job.key, "resume")
-    wait_until(lambda: samples(told)[-1]["t"][-1] > before)
+    wait_until(lambda: samples(reported)[-1]["t"][-1] > before)
     # Not made up for: the motion goes on from where it stood.
-    assert samples(told)[-1]["t"][-1] < before + 20.0
+    assert samples(reported)[-1]["t"][-1] < before + 20.0
     jobs.order(job.key, "stop")
     assert job.over.wait(30.0) and job.state == "done"
     assert job.result["outcome"]["reason"] == "stopped where you said"

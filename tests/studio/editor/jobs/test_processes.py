@@ -187,12 +187,12 @@ def test_an_error_is_taken_apart(error: Exception, expected: tuple[str, ...]) ->
 def run(monkeypatch: pytest.MonkeyPatch, code: str) -> tuple[Jobs, Any, list[tuple[str, Any]]]:
     """A job whose worker runs some code."""
     real = worker_process.subprocess.Popen
-    told: list[tuple[str, Any]] = []
+    reported: list[tuple[str, Any]] = []
     monkeypatch.setattr(
         worker_process.subprocess, "Popen", lambda command, **k: real([sys.executable, "-c", code], **k)
     )
-    jobs = Jobs(lambda kind, data: told.append((kind, data)))
-    return jobs, jobs.start("x", {}), told
+    jobs = Jobs(lambda kind, data: reported.append((kind, data)))
+    return jobs, jobs.start("x", {}), reported
 
 
 @pytest.mark.parametrize(
@@ -205,9 +205,9 @@ def run(monkeypatch: pytest.MonkeyPatch, code: str) -> tuple[Jobs, Any, list[tup
     ],
 )
 def test_a_crashed_worker_is_reported_and_replaced(monkeypatch: pytest.MonkeyPatch, code: str, says: str) -> None:
-    jobs, job, told = run(monkeypatch, code)
+    jobs, job, reported = run(monkeypatch, code)
     assert job.over.wait(30)
-    assert job.state == "failed" and says in job.error["found"] and told[-1][1]["state"] == "failed"
+    assert job.state == "failed" and says in job.error["found"] and reported[-1][1]["state"] == "failed"
     assert jobs.start("x", {}).over.wait(30)
 
 
@@ -218,9 +218,9 @@ def test_progress_is_reported_during_the_job(monkeypatch: pytest.MonkeyPatch) ->
             print(json.dumps({"progress": {"done": i, "total": 2, "text": "x"}}), flush=True)
         print(json.dumps({"result": {"a": 1}}))
     """
-    _, job, told = run(monkeypatch, code)
+    _, job, reported = run(monkeypatch, code)
     assert job.over.wait(30) and job.state == "done" and job.result == {"a": 1}
-    assert [data["progress"]["done"] for _, data in told] == [0, 1, 2, 2] and "result" not in told[-1][1]
+    assert [data["progress"]["done"] for _, data in reported] == [0, 1, 2, 2] and "result" not in reported[-1][1]
 
 
 def test_children_of_a_worker_end_with_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

@@ -287,8 +287,8 @@ def test_the_page_is_kept_apart_and_its_address_has_a_token_of_its_own(client: T
 
 def test_a_frame_is_dragged_and_pages_get_the_posture() -> None:
     """The loop stays closed, all of it moves; an unknown frame is refused."""
-    told: list[tuple[str, Json]] = []
-    view = DocumentViewer(lambda kind, data: told.append((kind, data)))
+    reported: list[tuple[str, Json]] = []
+    view = DocumentViewer(lambda kind, data: reported.append((kind, data)))
     try:
         view.follow(sf.load(FILES["four_bar"]))
         before = view.pose({"drag": "crank.end"})["q"]
@@ -297,7 +297,7 @@ def test_a_frame_is_dragged_and_pages_get_the_posture() -> None:
         place = np.asarray(viewer._handle.node.position)
         viewer._handle.node.position = place + [0.05, 0.0, -0.1]
         viewer._dragged(False)
-        kind, posed = told[-1]
+        kind, posed = reported[-1]
         assert kind == "posed" and posed["gap"] < 1e-9 and posed["why"] == ""
         assert all(abs(posed["q"][name] - before[name]) > 1e-3 for name in before)
         with pytest.raises(EditError, match="nose"):

@@ -16,7 +16,7 @@ from symofros.studio.viewer.page.camera_follow import CameraFollow
 
 
 class Camera:
-    """One that has told where it is, or has not."""
+    """A page that has reported its camera, or has not."""
 
     def __init__(self, position: np.ndarray | None) -> None:
         self._position = position

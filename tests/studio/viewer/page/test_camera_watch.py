@@ -1,4 +1,4 @@
-"""What is told of the camera: nothing until the page has put it to its place, nothing of several pages."""
+"""Reports of the camera: nothing until the page has put it to its place, nothing of several pages."""
 
 from __future__ import annotations
 

@@ -9,7 +9,7 @@ from ..writing.source import Way, ways_of
 # Sizes x, direction u; what says of an inertia all that it has.
 _BEGIN = f"""x, u = np.abs(v) + 0.5, v2 + {list(ASIDE)}
 u = u / np.linalg.norm(u)
-def told(I):
+def properties(I):
     J = I.CalcRotationalInertia()
     return [I.get_mass(), *I.get_com(), *J.get_moments(), *J.get_products()]
 """
@@ -43,12 +43,12 @@ _TRIANGLES = (
 
 
 def _spatial(of: str) -> str:
-    return f"{_BEGIN}value = told(drake.SpatialInertia.{of})"
+    return f"{_BEGIN}value = properties(drake.SpatialInertia.{of})"
 
 
 def _unit(of: str) -> str:
     """Moments of a unit inertia about the mass centre."""
-    return f"{_BEGIN}value = told(drake.SpatialInertia({MASS}, np.zeros(3), drake.UnitInertia.{of}))"
+    return f"{_BEGIN}value = properties(drake.SpatialInertia({MASS}, np.zeros(3), drake.UnitInertia.{of}))"
 
 
 WAYS = {
@@ -68,7 +68,7 @@ WAYS |= {
 }
 WAYS |= {
     f"shape_{one}": Way(
-        "CalcSpatialInertia", f"{_BEGIN}value = told(drake.CalcSpatialInertia(drake.{shape}, {DENSITY}))"
+        "CalcSpatialInertia", f"{_BEGIN}value = properties(drake.CalcSpatialInertia(drake.{shape}, {DENSITY}))"
     )
     for one, shape in _SHAPES.items()
 }
@@ -84,6 +84,7 @@ _SIX = "value = [*J.get_moments(), *J.get_products()]"
 _WHOLE = f"{_J}I = drake.SpatialInertia.MakeFromCentralInertia({MASS}, {list(CENTRE)}, J)\n"
 _SOLID_CYLINDER_WITH_DENSITY_ABOUT_END = _spatial(f"SolidCylinderWithDensityAboutEnd({DENSITY}, x[0], x[1], u)")
 _SOLID_CYLINDER_WITH_MASS_ABOUT_END = _spatial(f"SolidCylinderWithMassAboutEnd({MASS}, x[0], x[1], u)")
+_ABOUT_END = "SolidCylinderAboutEnd(x[0], x[1], u)"
 _THIN_ROD_WITH_MASS = _spatial(f"ThinRodWithMass({MASS}, x[0], u)")
 _THIN_ROD_WITH_MASS_ABOUT_END = _spatial(f"ThinRodWithMassAboutEnd({MASS}, x[0], u)")
 WAYS |= ways_of(f"""
@@ -91,7 +92,7 @@ WAYS |= ways_of(f"""
 {_SOLID_CYLINDER_WITH_DENSITY_ABOUT_END}
 == cylinder_about_end_of_mass | SpatialInertia.SolidCylinderWithMassAboutEnd | {_SOLID_CYLINDER_WITH_MASS_ABOUT_END}
 == cylinder_about_end_of_mass:UnitInertia | UnitInertia.SolidCylinderAboutEnd
-{_BEGIN}value = told(drake.SpatialInertia({MASS}, u * x[1] / 2, drake.UnitInertia.SolidCylinderAboutEnd(x[0], x[1], u)))
+{_BEGIN}value = properties(drake.SpatialInertia({MASS}, u * x[1] / 2, drake.UnitInertia.{_ABOUT_END}))
 == rod | SpatialInertia.ThinRodWithMass | {_THIN_ROD_WITH_MASS}
 == rod:UnitInertia | UnitInertia.ThinRod | {_unit("ThinRod(x[0], u)")}
 == rod:StraightLine | UnitInertia.StraightLine | {_unit("StraightLine(x[0] ** 2 / 12, u)")}
@@ -101,19 +102,19 @@ WAYS |= ways_of(f"""
 == solid_ball_of_mass:TriaxiallySymmetric | UnitInertia.TriaxiallySymmetric
 {_unit("TriaxiallySymmetric(0.4 * x[0] ** 2)")}
 == point_mass | UnitInertia.PointMass
-{_BEGIN}value = told(drake.SpatialInertia({MASS}, v, drake.UnitInertia.PointMass(v)))
+{_BEGIN}value = properties(drake.SpatialInertia({MASS}, v, drake.UnitInertia.PointMass(v)))
 == mesh_dented | CalcSpatialInertia of a TriangleSurfaceMesh
-{_BEGIN}{_TRIANGLES}value = told(drake.CalcSpatialInertia(mesh, {DENSITY}))
+{_BEGIN}{_TRIANGLES}value = properties(drake.CalcSpatialInertia(mesh, {DENSITY}))
 == mesh_dented:Mesh | CalcSpatialInertia of a Mesh
-{_BEGIN}{_FILE}value = told(drake.CalcSpatialInertia(drake.Mesh(file.name, 1.0), {DENSITY}))
+{_BEGIN}{_FILE}value = properties(drake.CalcSpatialInertia(drake.Mesh(file.name, 1.0), {DENSITY}))
 == convex_hull_of_mesh | CalcSpatialInertia of a Convex
-{_BEGIN}{_FILE}value = told(drake.CalcSpatialInertia(drake.Convex(file.name, 1.0), {DENSITY}))
+{_BEGIN}{_FILE}value = properties(drake.CalcSpatialInertia(drake.Convex(file.name, 1.0), {DENSITY}))
 == mesh_scaled | CalcSpatialInertia of a Mesh with a scale
-{_BEGIN}{_FILE}value = told(drake.CalcSpatialInertia(drake.Mesh(file.name, 2.0), {DENSITY}))
+{_BEGIN}{_FILE}value = properties(drake.CalcSpatialInertia(drake.Mesh(file.name, 2.0), {DENSITY}))
 == mesh_scaled_apart | CalcSpatialInertia of a Mesh with three scales
-{_BEGIN}{_FILE}value = told(drake.CalcSpatialInertia(drake.Mesh(file.name, scale3=[2.0, 0.5, 4.0]), {DENSITY}))
+{_BEGIN}{_FILE}value = properties(drake.CalcSpatialInertia(drake.Mesh(file.name, scale3=[2.0, 0.5, 4.0]), {DENSITY}))
 == convex_hull_scaled_apart | CalcSpatialInertia of a Convex with three scales
-{_BEGIN}{_FILE}value = told(drake.CalcSpatialInertia(drake.Convex(file.name, scale3=[2.0, 0.5, 4.0]), {DENSITY}))
+{_BEGIN}{_FILE}value = properties(drake.CalcSpatialInertia(drake.Convex(file.name, scale3=[2.0, 0.5, 4.0]), {DENSITY}))
 == moments_turned | RotationalInertia.ReExpress | {_J}J = J.ReExpress(R)\n{_SIX}
 == moments_turned:UnitInertia | UnitInertia.ReExpress
 {_J}G = drake.UnitInertia(*np.diag(m), m[0, 1], m[0, 2], m[1, 2]).ReExpress(R)
