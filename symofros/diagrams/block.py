@@ -8,7 +8,7 @@ name in the `__init__` there and of `symofros/blocks/`, a section of docs/blocks
 from __future__ import annotations
 
 from collections.abc import Callable, Iterable, Mapping
-from dataclasses import dataclass, field, fields
+from dataclasses import dataclass, field, fields, replace
 from typing import Any, ClassVar, Literal, Protocol
 
 import numpy as np
@@ -309,6 +309,14 @@ class Block(metaclass=CheckedCalls):
     def parameters(self) -> dict[str, Array]:
         """Run-time parameter -> value."""
         return {name: np.asarray(getattr(self, name), dtype=np.float64) for name in self.tunable}
+
+    def with_parameters(self, values: Mapping[str, Any]) -> Block:
+        """The same with other values of run-time parameters, named as `parameters` names them.
+
+        Raises:
+            DescriptionError: The block refuses them.
+        """
+        return replace(self, **values)
 
     @classmethod
     def form(cls) -> tuple[str, ...]:

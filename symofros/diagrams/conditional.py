@@ -157,6 +157,10 @@ class OnCondition(Block):
         """Parameters of the block."""
         return self.block.parameters()
 
+    def with_parameters(self, values: Mapping[str, Any]) -> Block:
+        """Block inside with other values."""
+        return replace(self, block=self.block.with_parameters(values))
+
 
 @dataclass(frozen=True, kw_only=True)
 class Conditional(OnCondition):

@@ -7,7 +7,10 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
 from typing import Any
 
+import numpy as np
+
 from symofros.base.arguments import CheckedCalls, checked
+from symofros.base.arrays import real_array
 from symofros.description import System
 from symofros.diagrams.block import Block, ModelFile, ModelSetup, Port
 from symofros.diagrams.conditional import LEVEL, ON, SIGNAL, Condition, OnCondition
@@ -29,12 +32,14 @@ class Part:
         models: Name of a model in the included diagram -> name in the including one.
         inputs: Inlet -> source.
         condition: When it runs; None: always.
+        parameters: Run-time parameter of the included diagram -> value, where another than there.
     """
 
     diagram: Diagram
     models: Mapping[str, str]
     inputs: Mapping[str, str]
     condition: Condition | None = None
+    parameters: Mapping[str, Any] = field(default_factory=dict)
 
 
 @dataclass
@@ -166,6 +171,7 @@ class Diagram(metaclass=CheckedCalls):
         part: Diagram,
         models: Mapping[str, str] | None = None,
         condition: Condition | None = None,
+        parameters: Mapping[str, Any] | None = None,
         **inputs: str,
     ) -> None:
         """Put a diagram into this one: its blocks become "name/block", its outlets "name.outlet".
@@ -175,22 +181,23 @@ class Diagram(metaclass=CheckedCalls):
             part: A diagram with inlets and outlets.
             models: The part's name of a model -> this diagram's; models that are left out come along as "name/model".
             condition: When its blocks run; None: always.
+            parameters: Run-time parameter of the part, as "block.gain" or "model.mass" -> its value here.
             inputs: Inlet -> source.
 
         Raises:
-            DescriptionError: An inlet is unknown, a name is taken, or a block can't run on a condition.
+            DescriptionError: An inlet or a parameter is unknown, a name is taken, or a block can't run on a condition.
         """
         self._refuse_name("part", name, {block.split(INSIDE)[0] for block in self.blocks})
         outlets = part.outlet_sources()
-        inside = dict(part.blocks)
+        values, known = dict(parameters or {}), dict(models or {})
+        own = {inner: setup for inner, setup in part.models.items() if inner not in known}
+        inside, own = self._valued(name, part.blocks, own, values)
         if condition is not None:
             inside = self._conditional(name, inside, condition, outlets)
-        self.parts[name] = Part(part, dict(models or {}), dict(inputs), condition)
-        known = dict(models or {})
-        for inner, setup in part.models.items():
-            if inner not in known:
-                known[inner] = f"{name}{INSIDE}{inner}"
-                self.models[known[inner]] = setup
+        self.parts[name] = Part(part, dict(known), dict(inputs), condition, values)
+        for inner, setup in own.items():
+            known[inner] = f"{name}{INSIDE}{inner}"
+            self.models[known[inner]] = setup
         for block in inside.values():
             self.blocks[f"{name}{INSIDE}{block.name}"] = _renamed(block, name, known)
         for (block_name, port), source in part.wires.items():
@@ -214,6 +221,42 @@ class Diagram(metaclass=CheckedCalls):
         except DescriptionError as error:
             part_of = f"diagram '{self.name}': part '{part}': "
             raise DescriptionError([replace(one, what=part_of + one.what) for one in error.problems]) from None
+
+    def _valued(
+        self, part: str, blocks: Mapping[str, Block], models: Mapping[str, ModelSetup], values: Mapping[str, Any]
+    ) -> tuple[dict[str, Block], dict[str, ModelSetup]]:
+        """Blocks and models of a part with other values of some run-time parameters."""
+        blocks, models, problems = dict(blocks), dict(models), list[Problem]()
+        of_blocks = {f"{name}.{key}": (name, key) for name, block in blocks.items() for key in block.parameters()}
+        of_models = {
+            f"{name}.{key}": (name, key) for name, one in models.items() for key in one.system.parameter_values()
+        }
+        stated: dict[tuple[bool, str], dict[str, Any]] = {}
+        what = f"diagram '{self.name}': part '{part}': "
+        for name, value in values.items():
+            array, is_of_block = real_array(value), name in of_blocks  # As runs take a name that a model has, too.
+            if not is_of_block and name not in of_models:
+                known = [*of_blocks, *of_models]
+                rule = f"run-time parameters of the part and its own models: {', '.join(known[:12]) or 'none'}"
+                remedy = did_you_mean(name, known)
+                problems.append(Problem(f"{what}no parameter '{name:.60}'", f"'{name:.60}'", rule, remedy))
+            elif array is None or not np.isfinite(array).all() or (not is_of_block and array.ndim):
+                rule = "finite; one number, of a model"
+                problems.append(Problem(f"{what}parameter '{name}'", f"{value!r:.60}", rule, "such as 0.5"))
+            else:
+                owner, key = (of_blocks if is_of_block else of_models)[name]
+                stated.setdefault((is_of_block, owner), {})[key] = array.tolist()
+        for (is_of_block, owner), given in stated.items():
+            if not is_of_block:
+                models[owner] = replace(models[owner], parameters={**models[owner].parameters, **given})
+                continue
+            try:
+                blocks[owner] = blocks[owner].with_parameters(given)
+            except DescriptionError as error:
+                problems += [replace(one, what=what + one.what) for one in error.problems]
+        if problems:
+            raise DescriptionError(problems)
+        return blocks, models
 
     def _feed(self, name: str, part: Diagram, inlet: str, source: str) -> None:
         """Connect a source to all that an inlet of a part feeds."""

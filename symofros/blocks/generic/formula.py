@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import re
 from collections.abc import Callable, Iterable, Mapping, Set
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from functools import cached_property
 from typing import Any
 
@@ -104,6 +104,10 @@ class Formula(Block):
     def parameters(self) -> dict[str, Array]:
         """The constants."""
         return {name: np.asarray(value, dtype=np.float64) for name, value in dict(self.constants or {}).items()}
+
+    def with_parameters(self, values: Mapping[str, Any]) -> Block:
+        """Block with other values of constants."""
+        return replace(self, constants={**dict(self.constants or {}), **values})
 
     def compute(self, context: EvaluationContext) -> Values:
         """The formulas, lowered into the graph."""

@@ -167,6 +167,10 @@ class StateMachine(Block):
         """The constants."""
         return {name: np.asarray(value, dtype=np.float64) for name, value in self.constants.items()}
 
+    def with_parameters(self, values: Mapping[str, Any]) -> Block:
+        """Block with other values of constants."""
+        return replace(self, constants={**self.constants, **values})
+
     def memory(self, environment: Environment) -> dict[str, Any]:
         """Which state is active (n), the outputs, whether it began; samples since the state was entered, or when."""
         active = [float(name == self._first) for name in self.machine_states]

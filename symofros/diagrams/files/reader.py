@@ -33,7 +33,7 @@ MAX_LEVELS = 10
 HEAD = DIAGRAM
 SECTIONS = (HEAD, "name", "models", "simulation", "blocks", "parts", "inlets", "outlets", "wires")
 MODEL = ("file", "functions", *READING, "start", "parameters")
-PART = ("file", "diagram", "models", "inputs", "condition")
+PART = ("file", "diagram", "models", "inputs", "condition", "parameters")
 
 _ARGUMENTS = frozenset(inspect.signature(Diagram.include).parameters) - {"inputs"}
 
@@ -236,8 +236,10 @@ class _Reader(BlockReader):
         if condition is not None:
             for signal in condition.signals():
                 diagram.origin["input", f"{name}/{signal}", SIGNAL] = self.where(entries["condition"])
+        stated = self.mapping(entries["parameters"], f"{what}: parameters") if "parameters" in entries else {}
+        values = {key: value.plain() for key, value in stated.items()}
         try:
-            diagram.include(name, inner, models, condition, **inputs)
+            diagram.include(name, inner, models, condition, values, **inputs)
         except DescriptionError as error:
             self.take(node, error.problems)
         for inlet in filter(inner.inlets.__contains__, inputs):

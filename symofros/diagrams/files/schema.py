@@ -80,7 +80,7 @@ def json_schema() -> Plain:
         "outlets": _TEXTS,
     }
     part = {"file": {"type": "string"}, "diagram": _object(sections), "models": _TEXTS, "inputs": _TEXTS}
-    part |= {"condition": of_type(Condition)}
+    part |= {"condition": of_type(Condition), "parameters": _named({"type": ["number", "array"]})}
     return {
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "A SYMOFROS diagram",

@@ -146,6 +146,7 @@ class _Writer:
             inside = self.document(part.diagram)
             entries["diagram"] = {key: value for key, value in inside.items() if key != "simulation"}
         more = {"models": dict(part.models), "inputs": dict(part.inputs), "condition": _condition(part.condition)}
+        more["parameters"] = {key: write(value) for key, value in part.parameters.items()}
         return entries | {key: value for key, value in more.items() if value}
 
 
@@ -157,7 +158,7 @@ def _replayed(diagram: Diagram) -> Diagram:
     """
     replayed = Diagram(diagram.name)
     for name, part in diagram.parts.items():
-        replayed.include(name, part.diagram, part.models, part.condition, **part.inputs)
+        replayed.include(name, part.diagram, part.models, part.condition, part.parameters, **part.inputs)
         changed = [
             key
             for key, block in replayed.blocks.items()

@@ -10,7 +10,6 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array, real_array
-from symofros.diagrams.conditional import unconditional
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Place
 from symofros.errors import DescriptionError, ParameterError, Problem, SymofrosError, UnknownNameError, did_you_mean
@@ -83,28 +82,27 @@ def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
                 )
             )
         par[place.slice] = np.broadcast_to(array, place.shape).reshape(-1)
-    _refuse_fields(resolved, {key: place for key, place in layout.parameters.items() if ".".join(key) in given}, par)
+    _refuse_values(resolved, {key: place for key, place in layout.parameters.items() if ".".join(key) in given}, par)
     for model in resolved.wired.models.names if given else ():
         resolved.wired.models.check_parameters(model, par[layout.parameters["", model].slice])
     return par
 
 
-def _refuse_fields(resolved: Resolved, given: Mapping[tuple[str, str], Place], par: Array) -> None:
-    """Refuse values of a block's fields that the block itself refuses: it is made anew with them.
+def _refuse_values(resolved: Resolved, given: Mapping[tuple[str, str], Place], par: Array) -> None:
+    """Refuse values that blocks refuse as they are made with them.
 
     Raises:
         ParameterError: With what blocks say.
     """
     problems: list[Problem] = []
     for name in dict.fromkeys(name for name, _ in given):
-        block = unconditional(resolved.wired.blocks[name])
-        values: dict[str, Any] = {
-            field: par[place.slice].reshape(place.shape) if place.shape else float(par[place.start])
-            for (of, field), place in given.items()
-            if of == name and field in block.tunable
+        values = {
+            key: par[place.slice].reshape(place.shape) if place.shape else float(par[place.start])
+            for (of, key), place in given.items()
+            if of == name
         }
         try:
-            replace(block, **values)
+            resolved.wired.blocks[name].with_parameters(values)
         except DescriptionError as error:
             problems += error.problems
     if problems:
