@@ -90,9 +90,9 @@ class Records:
         wanted = [source for source in sources if source not in self._known]
         if not wanted:
             return
-        self._known.update(self.values(wanted, self.compiled.signals(wanted)))
+        self._known.update(self.evaluated(wanted, self.compiled.signals(wanted)))
 
-    def values(self, sources: Sequence[Source], kernel: Kernel, rows: slice = _ALL) -> dict[Source, Array]:
+    def evaluated(self, sources: Sequence[Source], kernel: Kernel, rows: slice = _ALL) -> dict[Source, Array]:
         """Outputs at some of the records, by a function of `CompiledDiagram.signals` that gives them."""
         pre = kernel.prepare(self.par.reshape(1, -1))
         known = {"q": self.q, "v": self.v, "u": self.u, "t": self.t[:, np.newaxis]}

@@ -368,6 +368,7 @@ def test_a_run_says_which_signals_it_has() -> None:
     diagram.outlets = {"shown": "ticks.n"}
     run = sf.Simulation(diagram).run(0.2, dt=0.1, record=0.1)
     assert all(name in run and run.get(name).tolist() == [0, 1, 2] for name in ("ticks.n", "ticks", "shown"))
+    assert [values.tolist() for values in run.values()] == [[0, 1, 2]] and list(dict(run)) == ["ticks.n"]
     for name in ("ticks.m", "later.y", "", 3):
         assert name not in run and run.get(name, "none") == "none"  # type: ignore[arg-type]
 

@@ -78,7 +78,7 @@ def signals_of(records: Records) -> Callable[[slice], Iterator[tuple[Source, Arr
     computed = [one for one in order if one not in held and _may_leave(pieces[one[0]], one[1])]
 
     def values(rows: slice) -> Iterator[tuple[Source, Array]]:
-        found = records.values(computed, compiled.signals(computed, by_numpy=True), rows) if computed else {}
+        found = records.evaluated(computed, compiled.signals(computed, by_numpy=True), rows) if computed else {}
         for source in order:
             if source in held:
                 yield source, records.u[rows, held[source].slice]
