@@ -4,14 +4,14 @@ from __future__ import annotations
 
 import json
 import time
-from typing import Annotated
+from typing import Annotated, Any
 
 import typer
 
 import symofros as sf
 from symofros.commands.shared import AsJson, refuse
 from symofros.commands.terminal import out
-from symofros.runtime.build import LIMIT_VARIABLE, Entry, cache_folder, entries, limit, prune
+from symofros.runtime.build import LIMIT_VARIABLE, Pruned, cache_folder, entries, limit, prune
 
 _MEGABYTE, _DAY = 1e6, 86400.0
 
@@ -33,14 +33,14 @@ def cache(
         folder, allowed = cache_folder(), limit()
     except sf.SymofrosError as error:
         raise refuse(error) from None
-    removed: list[Entry] = []
+    pruned = Pruned([], [])
     if clear:
-        removed = prune(folder, -1.0)
+        pruned = prune(folder, -1.0)
     elif to is not None or days is not None:
-        removed = prune(folder, float("inf") if to is None else to * _MEGABYTE, (days or 0.0) * _DAY)
+        pruned = prune(folder, float("inf") if to is None else to * _MEGABYTE, (days or 0.0) * _DAY)
     held = entries(folder)
     libraries = sum(any(file.suffix == ".digest" for file in entry.files) for entry in held)
-    size, freed = sum(entry.size for entry in held), sum(entry.size for entry in removed)
+    size, freed = sum(entry.size for entry in held), sum(entry.size for entry in pruned.removed)
     stated = {
         "folder": str(folder),
         "libraries": libraries,
@@ -51,12 +51,20 @@ def cache(
     }
     if as_json:
         print(json.dumps(stated, indent=1))
-        return
-    if removed:
+    else:
+        _print_held(stated)
+    if pruned.kept:
+        what, found = f"'{folder}' keeps files that were to go", f"{len(pruned.kept)} that can't be removed"
+        rule = "files go that this user may remove, and no other process has loaded"
+        raise refuse(sf.SymofrosError(sf.Problem(what, found, rule, "check the folder's rights")))
+
+
+def _print_held(stated: dict[str, Any]) -> None:
+    if stated["removed_megabytes"]:
         out.print(f"removed {stated['removed_megabytes']} MB", markup=False)
     bound = "no limit" if stated["limit"] is None else f"limit {stated['limit']:g} MB ({LIMIT_VARIABLE})"
-    out.print(str(folder), markup=False, highlight=False, soft_wrap=True)
-    count = f"{libraries} compiled part{'s' * (libraries != 1)} of models"
+    out.print(stated["folder"], markup=False, highlight=False, soft_wrap=True)
+    count = f"{stated['libraries']} compiled part{'s' * (stated['libraries'] != 1)} of models"
     out.print(f"{count}, {stated['megabytes']} MB; {bound}", markup=False, highlight=False)
-    if held:
+    if stated["libraries"]:
         out.print(f"the least recently used: {stated['oldest_days']} days ago", markup=False, highlight=False)

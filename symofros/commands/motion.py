@@ -35,8 +35,13 @@ from symofros.diagrams.files import command as diagrams
 from symofros.diagrams.files.kind import is_diagram
 from symofros.simulation.analysis.kinematics.starts import closed_start, stated_names
 from symofros.simulation.progress import pace_of
-from symofros.simulation.results.plots import MAX_CURVES
+from symofros.simulation.results.ends import INTERRUPTED
+from symofros.simulation.results.plots import MAX_CURVES, check_curves, check_picture, write_picture
+from symofros.simulation.results.saving import check_file
 from symofros.simulation.stepping.methods import METHODS
+
+# Exit status of a command that Ctrl-C has ended: 128 and the number of the signal, as of shells.
+_STOPPED = 130
 
 
 @reads_models
@@ -117,7 +122,7 @@ def simulate(
             files = diagrams.write_files(diagram_run, request) + view_options.record_run(diagram_run, viewing)
             diagrams.print_run(diagram_run, files, as_json, out)
             view_options.show_run(diagram_run, viewing, live=live)
-            ok = diagram_run.outcome.ok
+            outcome = diagram_run.outcome
         else:
             if picture == diagrams.WINDOW:
                 raise sf.SymofrosError(
@@ -129,18 +134,22 @@ def simulate(
                     )
                 )
             viewing.check()
-            system = load(model, reading)
-            run = _simulated(system, t_end, given, inputs, every, pace, stated, wanted)
+            if output:
+                check_file(output, "trajectory")
+            if picture:
+                check_picture(Path(picture))
+            system, curves = load(model, reading), names_of(signals) or []
+            run = _simulated(system, t_end, given, inputs, curves, every, pace, stated, wanted)
             files = ([str(run.save(output))] if output else []) + view_options.record_run(run, viewing, system)
             if picture:
-                files.append(_drawn(run, names_of(signals) or [], picture))
+                files.append(_drawn(run, curves, picture))
             _tell(run, files, as_json)
             view_options.show_run(run, viewing, system)
-            ok = run.outcome.ok
+            outcome = run.outcome
     except (sf.SymofrosError, ValueError, OSError) as error:
         raise refuse(error) from None
-    if not ok:
-        raise typer.Exit(1)
+    if not outcome.ok:
+        raise typer.Exit(_STOPPED if outcome.reason == INTERRUPTED.reason else 1)
 
 
 def _simulated(
@@ -148,6 +157,7 @@ def _simulated(
     t_end: float | None,
     given: list[str],
     inputs: list[str],
+    curves: list[str],
     every: float | None,
     pace: float,
     settings: dict[str, Any],
@@ -156,6 +166,7 @@ def _simulated(
     """The run of one model."""
     stated = assignments(given, "--set")
     compiled, q, v = stated_state(compile_system(system), stated)
+    check_curves(compiled, curves)
     start = closed_start(compiled, q, v, *stated_names(compiled.names.q, compiled.names.v, stated))
     run = sf.simulate(
         compiled,
@@ -173,7 +184,7 @@ def _simulated(
 
 def _drawn(run: sf.Trajectory, names: list[str], picture: str) -> str:
     """Write a plot of a run to a file and return its path; report it if only the first curves are shown."""
-    run.plot(*names).savefig(picture, dpi=120)
+    write_picture(run.plot(*names), Path(picture))
     count = len(names or run.model.names.q)
     if count > MAX_CURVES:
         note = f"{picture} shows the first {MAX_CURVES} of {count} coordinates: --signals NAME,... chooses others"

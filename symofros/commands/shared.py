@@ -5,7 +5,6 @@ A command that finds all it was asked for in the cache imports this: NumPy and R
 
 from __future__ import annotations
 
-import errno
 import re
 from collections.abc import Iterator
 from contextlib import contextmanager
@@ -15,6 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import symofros as sf
+from symofros.base.atomic import NO_ROOM
 from symofros.commands.reading import ReadingOptions, pairs
 
 if TYPE_CHECKING:
@@ -28,8 +28,6 @@ AllowNative = Annotated[
 ]
 AsJson = Annotated[bool, typer.Option("--json", help="Machine-readable output.")]
 BAD_INPUT = 2
-# A disk, a quota or a limit of size that is exhausted; Windows has no quota of that name.
-_FULL = (errno.ENOSPC, errno.EFBIG, getattr(errno, "EDQUOT", errno.ENOSPC))
 # Why options of reading are refused.
 NOT_FOR_DIAGRAMS = "the file is a diagram, which states how its models are read"
 
@@ -53,10 +51,10 @@ def refusing_descriptions(path: Path) -> Iterator[None]:
 
 def refuse(error: Exception) -> typer.Exit:
     """Report an error in the input and return the exit to raise."""
-    if isinstance(error, OSError) and (error.filename is not None or error.errno in _FULL):
+    if isinstance(error, OSError) and (error.filename is not None or error.errno in NO_ROOM):
         what = f"'{error.filename}' can't be used" if error.filename is not None else "a file can't be written"
         rule, remedy = "files and folders are there, and open to whoever runs this", "check the path, and its rights"
-        if error.errno in _FULL:
+        if error.errno in NO_ROOM:
             rule, remedy = "there is room for what is written", "make room, write elsewhere, or raise `ulimit -f`"
         error = sf.SymofrosError(sf.Problem(what, error.strerror or str(error), rule, remedy))
     _complain(error.in_shell() if isinstance(error, sf.SymofrosError) else str(error))

@@ -6,6 +6,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
+from symofros.base.atomic import check_writable
 from symofros.blocks.graphics.view import View3D, with_view
 from symofros.description import System
 from symofros.diagrams.diagram import Diagram
@@ -41,6 +42,7 @@ class ViewOptions:
 
         Raises:
             SymofrosError: The file has another suffix, or viser is not installed; or no page is to simulate on.
+            OSError: The file can't be written.
             CompileError: The page is to simulate, and ziglang is not installed.
         """
         if self.interactive:
@@ -53,6 +55,7 @@ class ViewOptions:
             wasm.check_compiler()
         if self.output is not None:
             check_suffix(self.output)
+            check_writable(self.output)
         if self.view:
             load_viser()
 
@@ -63,6 +66,7 @@ def with_live_view(diagram: Diagram, options: ViewOptions, keeps_pace: bool) -> 
     Raises:
         SymofrosError: As `ViewOptions.check`; or the page is to simulate on; or the mechanism to be shown is not there,
             or not the only one.
+        OSError: As `ViewOptions.check`.
     """
     if options.interactive:
         rule, remedy = "the page simulates models: blocks are not in it", "leave --interactive out"

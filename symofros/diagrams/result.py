@@ -18,7 +18,7 @@ from symofros.errors import DescriptionError
 from symofros.runtime.beams import BeamBending
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.plots import draw, show_windows, window_figure
-from symofros.simulation.results.saving import refuse_suffix, write_columns, write_npz
+from symofros.simulation.results.saving import check_file, write_columns, write_npz
 from symofros.simulation.results.trajectory import Found
 
 
@@ -86,7 +86,7 @@ class DiagramRun(Records, Mapping[str, Array]):
             SymofrosError: Another suffix; no such signal; Parquet without pyarrow.
         """
         path = Path(path)
-        refuse_suffix(path, "run")
+        check_file(path, "run")
         wanted = list(signals) or list(self)
         names = list(dict.fromkeys(split(name)[0] for name in wanted))
         self.compute(list(map(self.compiled.resolved.wired.output, names)))

@@ -2,6 +2,9 @@
 
 from __future__ import annotations
 
+import errno
+import json
+from collections.abc import Callable
 from pathlib import Path
 
 import numpy as np
@@ -10,6 +13,7 @@ from typer.testing import CliRunner, Result
 
 import symofros as sf
 from symofros.__main__ import app
+from symofros.simulation.stepping.time_slice import TimeSlice
 from tests.diagrams.files.cases import ARM, TEXT, folder_with
 
 FOUR_BAR = ARM.parents[1] / "closed" / "four_bar.yaml"
@@ -77,6 +81,15 @@ def test_simulate_shows_the_mechanism_of_the_chosen_block(seen: list[sf.Viewer],
         (["--view"], "pip install 'symofros[view]'"),
         (["--interactive"], "--interactive: "),
         (["--interactive", "--record-view", "r.gif"], "--interactive: "),
+        (["--record-view", "nowhere/r.png"], "check the path"),
+        (["--plot", "nowhere/r.png"], "check the path"),
+        (["--plot", "."], "plot: can't write ''"),
+        (["--plot", "r.xyz"], "choose .png, .svg or .pdf"),
+        (["--plot", "r"], "no suffix"),
+        (["--signals", "q9"], "q9"),
+        (["-o", "nowhere/r.csv"], "check the path"),
+        (["-o", "folder.csv"], "Is a directory"),
+        (["-o", "r.txt"], ".npz, .csv or .parquet"),
     ],
 )
 def test_a_run_that_cannot_be_displayed_is_not_started(
@@ -84,6 +97,10 @@ def test_a_run_that_cannot_be_displayed_is_not_started(
 ) -> None:
     monkeypatch.setitem(__import__("sys").modules, "viser", None)
     file = ARM if of == "model" else folder_with(tmp_path)
+    monkeypatch.chdir(tmp_path)
+    Path("folder.csv").mkdir()
+    for module in ("symofros.commands.motion.sf.simulate", "symofros.diagrams.files.command.run_compiled"):
+        monkeypatch.setattr(module, lambda *_, **__: pytest.fail("the run has begun"))
     found = run(file, "0.1", "-o", tmp_path / "r.npz", *arguments)
     assert found.exit_code == 2 and expected in found.output and not (tmp_path / "r.npz").exists()
 
@@ -99,3 +116,38 @@ def test_view_draws_a_picture_or_plays_a_trajectory_of_the_same_model(seen: list
     assert f"double_pendulum is at {viewer.url} (Ctrl-C ends)" in found.output and "127.0.0.1" in viewer.url
     other = run(FOUR_BAR, "--trajectory", motion, "--record", tmp_path / "run.gif", command="view")
     assert other.exit_code == 2 and "coordinates q1, q2" in other.output and "q1, q2, q3" in other.output
+
+
+@pytest.mark.parametrize("of", ["model", "diagram"])
+def test_an_interrupted_run_is_kept_and_ends_as_interrupted(
+    of: str, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """By 130, as of shells; runs that end by themselves before their time end by 1."""
+    steps = iter([None, KeyboardInterrupt])
+    measured = TimeSlice.measure
+
+    def measure(self: TimeSlice, advance: Callable[[int], int], count: int) -> int:
+        if next(steps) is not None:
+            raise KeyboardInterrupt
+        return measured(self, advance, 7)
+
+    monkeypatch.setattr(TimeSlice, "measure", measure)
+    file = ARM if of == "model" else folder_with(tmp_path)
+    found = run(file, "0.1", "--json", "-o", tmp_path / "r.npz")
+    assert found.exit_code == 130 and json.loads(found.output)["outcome"]["kind"] == "interrupted", found.output
+    instants = {"model": 8, "diagram": 7}  # Steps from the start; instants, the start among them.
+    assert len(np.load(tmp_path / "r.npz")["t"]) == instants[of]
+
+
+def test_pictures_are_whole_or_absent(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """A disk that is full as Matplotlib writes left a part of a picture, and named no file."""
+    picture = tmp_path / "r.svg"
+    picture.write_text("old")
+
+    def full(*_: object) -> None:
+        raise OSError(errno.ENOSPC, "No space left on device")
+
+    monkeypatch.setattr("symofros.base.atomic.os.replace", full)
+    found = run(ARM, "0.01", "--plot", picture)
+    assert found.exit_code == 2 and "r.svg" in found.output and "make room" in found.output
+    assert picture.read_text() == "old" and [*tmp_path.iterdir()] == [picture]

@@ -22,6 +22,8 @@ from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.simulation import Simulation
 from symofros.errors import Problem, SymofrosError
 from symofros.simulation.progress import pace_of
+from symofros.simulation.results.plots import check_picture, write_picture
+from symofros.simulation.results.saving import check_file
 
 WINDOW = "window"
 
@@ -50,12 +52,19 @@ class RunRequest:
     plot: str
     jitter: Path | None
 
+    @property
+    def pictures(self) -> list[Path]:
+        """Pictures to write."""
+        plot = Path(self.plot) if self.plot not in ("", WINDOW) else None
+        return [path for path in (self.jitter, plot) if path]
+
 
 def run_diagram(diagram: Diagram, request: RunRequest, progress: bool) -> DiagramRun:
     """Run a diagram as wished.
 
     Raises:
-        SymofrosError: The diagram, a setting or a signal's name is wrong; nothing has run then.
+        SymofrosError: The diagram, a setting, a file or a signal's name is wrong; nothing has run then.
+        OSError: A file can't be written; nothing has run then.
     """
     simulation = Simulation(diagram)
     t_end = request.t_end if request.t_end is not None else diagram.simulation.t_end
@@ -71,6 +80,10 @@ def run_diagram(diagram: Diagram, request: RunRequest, progress: bool) -> Diagra
                 "add --realtime",
             )
         )
+    if request.output:
+        check_file(request.output, "run")
+    for picture in request.pictures:
+        check_picture(picture)
     compiled = simulation.compiled_with(request.inputs)
     for name in request.signals:
         compiled.resolved.wired.check_signal(name)
@@ -81,12 +94,12 @@ def write_files(run: DiagramRun, request: RunRequest) -> list[str]:
     """Write the requested files, and return their paths; a window opens last and waits until it is closed."""
     files = run.save(request.output, *request.signals) if request.output else []
     if request.jitter:
-        histogram(run.cost.late, run.compiled.resolved.wired.name).savefig(request.jitter, dpi=120)
+        write_picture(histogram(run.cost.late, run.compiled.resolved.wired.name), request.jitter)
         files.append(request.jitter)
     if request.plot == WINDOW:
         run.show(*request.signals)
     elif request.plot:
-        run.plot(*request.signals).savefig(request.plot, dpi=120)
+        write_picture(run.plot(*request.signals), Path(request.plot))
         files.append(Path(request.plot))
     return list(map(str, files))
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 from symofros.runtime.build.build import build_library as build_library
 from symofros.runtime.build.cache import cache_folder as cache_folder
 from symofros.runtime.build.cache_size import LIMIT_VARIABLE as LIMIT_VARIABLE
-from symofros.runtime.build.cache_size import Entry as Entry
+from symofros.runtime.build.cache_size import Pruned as Pruned
 from symofros.runtime.build.cache_size import entries as entries
 from symofros.runtime.build.cache_size import limit as limit
 from symofros.runtime.build.cache_size import prune as prune

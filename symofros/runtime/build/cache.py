@@ -16,7 +16,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from symofros.base.atomic import write_atomically
+from symofros.base.atomic import NO_ROOM, write_atomically
 from symofros.errors import CompileError, Problem
 from symofros.runtime.build.cache_size import keep_within_limit, note_use
 
@@ -89,14 +89,10 @@ def create_cache_folder(folder: Path) -> None:
 
 def unusable(folder: Path, error: OSError) -> CompileError:
     """The error of a folder that can't be written."""
-    return CompileError(
-        Problem(
-            f"the cache folder can't be used: {error}",
-            str(folder),
-            "compiled models are kept in a folder that can be written",
-            _REMEDY,
-        )
-    )
+    rule, remedy = "compiled models are kept in a folder that can be written", _REMEDY
+    if error.errno in NO_ROOM:
+        rule, remedy = "there is room for compiled models", f"make room (symofros cache --clear), or {_REMEDY}"
+    return CompileError(Problem(f"the cache folder can't be used: {error}", str(folder), rule, remedy))
 
 
 @cache

@@ -9,6 +9,7 @@ from contextlib import suppress
 from dataclasses import dataclass
 from functools import cache
 from pathlib import Path
+from typing import NamedTuple
 
 from symofros.errors import Problem, SymofrosError
 
@@ -59,29 +60,41 @@ def entries(folder: Path) -> list[Entry]:
     return sorted(made, key=lambda entry: entry.used)
 
 
-def prune(folder: Path, limit: float, unused: float = 0.0) -> list[Entry]:
+class Pruned(NamedTuple):
+    """What was removed, and what could not be: of a folder that is only read, or loaded by another process."""
+
+    removed: list[Entry]
+    kept: list[Entry]
+
+
+def prune(folder: Path, limit: float, unused: float = 0.0) -> Pruned:
     """Remove the least recently used until the rest is within a limit.
 
     Args:
         folder: Folder of compiled models.
         limit: Bytes that may stay.
         unused: Also what was not used for so long [s]; 0: not for this reason.
-
-    Returns:
-        What was removed.
     """
     held = entries(folder)
     total, oldest = sum(entry.size for entry in held), time.time() - unused if unused else 0.0
-    removed = []
+    pruned = Pruned([], [])
     for entry in held:
         if total <= limit and entry.used >= oldest:
             break
-        for file in entry.files:
-            with suppress(OSError):  # Loaded by another process, on systems where that keeps it.
-                file.unlink()
-        removed.append(entry)
-        total -= entry.size
-    return removed
+        if all([_removed(file) for file in entry.files]):
+            pruned.removed.append(entry)
+            total -= entry.size
+        else:
+            pruned.kept.append(entry)
+    return pruned
+
+
+def _removed(file: Path) -> bool:
+    try:
+        file.unlink(missing_ok=True)
+    except OSError:
+        return False
+    return True
 
 
 def limit() -> float:

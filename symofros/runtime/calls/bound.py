@@ -6,13 +6,13 @@ import operator
 from collections.abc import Callable, Mapping, Sequence
 from math import prod
 from types import MappingProxyType
-from typing import Any, Literal, get_args
+from typing import Any, Literal, NoReturn, get_args
 
 import numpy as np
 
 from symofros.base.arguments import check_argument
 from symofros.base.arrays import share_memory
-from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
+from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array, BatchKernel, Kernel, Numbers, Signature
 from symofros.runtime.calls.layout import columns
 
@@ -46,6 +46,12 @@ class Bound:
         self.outputs = MappingProxyType({name: arrays[name] for name, _ in signature.outputs})
         self._evaluate = evaluate
         self._kept = kept
+
+    def __reduce_ex__(self, protocol: object) -> NoReturn:
+        """Refuse to pickle or copy memory of C."""
+        rule, remedy = "it is compiled code and memory of one process", "send the model, and bind the function there"
+        functions = ", ".join(self.outputs)
+        raise SymofrosError(Problem("bound function: neither pickled nor copied", f"that of {functions}", rule, remedy))
 
     def __call__(self) -> None:
         """Compute the outputs from the current contents of the inputs."""

@@ -2,13 +2,17 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping, Sequence
+import io
+from collections.abc import Iterable, Mapping, Sequence
 from dataclasses import dataclass
 from importlib import import_module
+from pathlib import Path
 from typing import Any
 
 from symofros.base.arrays import Array
-from symofros.errors import Problem, SymofrosError
+from symofros.base.atomic import check_writable, write_atomically
+from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.runtime.model import Model
 
 MAX_CURVES = 12  # In one panel; more can't be distinguished.
 # Matplotlib's ways to draw that have no windows.
@@ -89,6 +93,42 @@ def draw(t: Array, panels: Sequence[Panel], title: str, figure: Any = None) -> A
         axis.set_xlabel("t [s]")
     figure.suptitle(title)
     return figure
+
+
+def check_picture(path: Path) -> None:
+    """Refuse a file that a figure can't be written to; a run is asked before it begins.
+
+    Raises:
+        SymofrosError: Matplotlib is not installed, or does not write pictures of this suffix.
+        OSError: The file can't be written.
+    """
+    formats = figure_class()().canvas.get_supported_filetypes()
+    if path.suffix[1:].lower() not in formats:
+        rule = f"Matplotlib writes {', '.join(sorted(formats))}"
+        raise SymofrosError(
+            Problem(f"plot: can't write '{path.name}'", path.suffix or "no suffix", rule, "choose .png, .svg or .pdf")
+        )
+    check_writable(path)
+
+
+def write_picture(figure: Any, path: Path) -> None:
+    """Write a figure, whole or not at all; its suffix is one that `check_picture` takes."""
+    stream = io.BytesIO()
+    figure.savefig(stream, format=path.suffix[1:].lower(), dpi=120)
+    write_atomically(path, stream.getvalue())
+
+
+def check_curves(model: Model, wanted: Iterable[str]) -> None:
+    """Refuse names that are none of a model's coordinates, speeds and inputs.
+
+    Raises:
+        UnknownNameError: With the nearest name.
+    """
+    every = [*dict.fromkeys((*model.names.q, *model.names.v, *model.names.u))]
+    for name in (name for name in wanted if name not in every):
+        rule = "a picture shows coordinates, speeds and inputs by their names"
+        missing = f"plot: no coordinate, speed or input '{name}'"
+        raise UnknownNameError(Problem(missing, ", ".join(every[:12]), rule, did_you_mean(name, every)))
 
 
 def window_figure() -> Any:

@@ -12,17 +12,22 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.base.atomic import write_atomically
+from symofros.base.atomic import check_writable, write_atomically
 from symofros.errors import Problem, SymofrosError
 
 SUFFIXES = (".npz", ".csv", ".parquet")
 
 
-def refuse_suffix(path: Path, what: str) -> None:
-    """Refuse a suffix that is not in SUFFIXES.
+def check_file(path: Path, what: str) -> None:
+    """Refuse a file that columns and arrays can't be saved to; a run is asked before it begins.
+
+    Args:
+        path: Path of the file.
+        what: Is saved, for messages.
 
     Raises:
-        SymofrosError: Another suffix than SUFFIXES.
+        SymofrosError: Another suffix than SUFFIXES; or Parquet without pyarrow.
+        OSError: The file can't be written.
     """
     if path.suffix not in SUFFIXES:
         raise SymofrosError(
@@ -33,6 +38,9 @@ def refuse_suffix(path: Path, what: str) -> None:
                 "choose one of them",
             )
         )
+    if path.suffix == ".parquet":
+        _pyarrow(what)
+    check_writable(path)
 
 
 def write_npz(path: Path, arrays: Mapping[str, Any]) -> None:
@@ -65,10 +73,10 @@ def write_columns(path: Path, columns: Mapping[str, Array], what: str, units: Ma
     write_atomically(path, text.getvalue())
 
 
-def _parquet(columns: Mapping[str, Array], what: str, units: Mapping[str, str]) -> bytes:
+def _pyarrow(what: str) -> tuple[Any, Any]:
+    """The modules pyarrow and pyarrow.parquet."""
     try:
-        pyarrow = import_module("pyarrow")  # An extra: 40 MB that only this needs.
-        parquet = import_module("pyarrow.parquet")
+        return import_module("pyarrow"), import_module("pyarrow.parquet")  # An extra: 40 MB that only this needs.
     except ImportError:
         raise SymofrosError(
             Problem(
@@ -78,6 +86,10 @@ def _parquet(columns: Mapping[str, Array], what: str, units: Mapping[str, str]) 
                 "pip install pyarrow, or save as .npz",
             )
         ) from None
+
+
+def _parquet(columns: Mapping[str, Array], what: str, units: Mapping[str, str]) -> bytes:
+    pyarrow, parquet = _pyarrow(what)
     fields = [
         pyarrow.field(name, pyarrow.float64(), metadata={"unit": units[name]} if units.get(name) else None)
         for name in columns

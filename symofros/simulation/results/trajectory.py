@@ -20,8 +20,8 @@ from symofros.runtime.beams import BeamBending
 from symofros.runtime.model import ContactForces, Model
 from symofros.simulation.analysis.sliding import contact_dynamics
 from symofros.simulation.results.outcome import Outcome
-from symofros.simulation.results.plots import Panel, draw
-from symofros.simulation.results.saving import refuse_suffix, write_columns, write_npz
+from symofros.simulation.results.plots import Panel, check_curves, draw
+from symofros.simulation.results.saving import check_file, write_columns, write_npz
 from symofros.simulation.results.section_forces import SectionForces, section_forces_of
 
 
@@ -303,12 +303,8 @@ class Trajectory:
             SymofrosError: Matplotlib is not installed.
             UnknownNameError: A name is none of a coordinate, speed or input.
         """
+        check_curves(self.model, names)
         known = self.model.names
-        every = [*dict.fromkeys((*known.q, *known.v, *known.u))]
-        for name in (name for name in names if name not in every):
-            rule = "a picture shows coordinates, speeds and inputs by their names"
-            missing = f"plot: no coordinate, speed or input '{name}'"
-            raise UnknownNameError(Problem(missing, ", ".join(every[:12]), rule, did_you_mean(name, every)))
         panels = {
             "coordinates [rad, m]": _curves(known.q, self.q, names),
             "speeds [rad/s, m/s]": _curves(known.v, self.v, names),
@@ -328,7 +324,7 @@ class Trajectory:
             SymofrosError: Another suffix; or Parquet without pyarrow.
         """
         path = Path(path)
-        refuse_suffix(path, "trajectory")
+        check_file(path, "trajectory")
         if path.suffix == ".npz":
             arrays: dict[str, Any] = {"t": self.t, "q": self.q, "v": self.v, "u": self.u, "par": self.par}
             names = self.model.names

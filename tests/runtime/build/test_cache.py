@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import errno
 import os
 import stat
 from collections.abc import Callable
@@ -11,7 +12,7 @@ import pytest
 
 import symofros as sf
 from symofros.runtime.build.build import build_library
-from symofros.runtime.build.cache import cache_folder
+from symofros.runtime.build.cache import cache_folder, unusable
 from symofros.runtime.build.toolchain import find_toolchain
 
 SOURCE = "int answer(void) { return 42; }\n"
@@ -143,3 +144,9 @@ def test_the_cache_folder_follows_the_environment(monkeypatch: pytest.MonkeyPatc
     monkeypatch.delenv("SYMOFROS_CACHE", raising=False)
     monkeypatch.setenv("XDG_CACHE_HOME", str(tmp_path))
     assert cache_folder() == tmp_path / "symofros"
+
+
+@pytest.mark.parametrize(("number", "remedy"), [(errno.ENOSPC, "make room"), (errno.EACCES, "set SYMOFROS_CACHE")])
+def test_a_folder_that_cannot_be_written_says_what_to_do(number: int, remedy: str, tmp_path: Path) -> None:
+    error = unusable(tmp_path, OSError(number, os.strerror(number)))
+    assert error.problem.remedy.startswith(remedy) and "SYMOFROS_CACHE" in error.problem.remedy

@@ -42,9 +42,9 @@ def test_the_least_recently_used_library_is_removed_first(folder: Path) -> None:
     for letter, days in (("a", 3), ("b", 9), ("c", 1)):
         held(folder, letter, days)
     assert [entry.files[0].name[0] for entry in entries(folder)] == ["b", "a", "c"]
-    removed = prune(folder, 6500.0)
+    removed = prune(folder, 6500.0).removed
     assert [entry.size for entry in removed] == [3000] and names(folder) == {"a", "c"}
-    assert prune(folder, 6500.0) == []
+    assert prune(folder, 6500.0) == ([], [])
 
 
 def test_foreign_files_and_links_are_never_removed(folder: Path, tmp_path_factory: pytest.TempPathFactory) -> None:
@@ -93,3 +93,20 @@ def test_the_cache_command_lists_and_removes(folder: Path) -> None:
     assert less["libraries"] == 1 and names(folder) == {"a"}
     none = json.loads(CliRunner().invoke(app, ["cache", "--clear", "--json"]).stdout)
     assert (none["libraries"], none["megabytes"], names(folder)) == (0, 0.0, set())
+
+
+def test_what_cannot_be_removed_is_not_called_removed(folder: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    """As in a folder that is only read: "removed 2.1 MB" was said, and all of them were there."""
+    held(folder, "a", 3)
+    held(folder, "b", 9)
+    remove = Path.unlink
+
+    def unlink(self: Path, missing_ok: bool = False) -> None:
+        if self.name == f"{'b' * 32}.so":
+            raise PermissionError(13, "Permission denied", str(self))
+        remove(self, missing_ok=missing_ok)
+
+    monkeypatch.setattr(Path, "unlink", unlink)
+    ended = CliRunner().invoke(app, ["cache", "--clear"])
+    assert ended.exit_code == 2 and "1 that can't be removed" in ended.output and names(folder) == {"b"}
+    assert [len(entries) for entries in prune(folder, -1.0)] == [0, 1]

@@ -2,8 +2,11 @@
 
 from __future__ import annotations
 
+import copy
 import gc
+import pickle
 import tracemalloc
+from collections.abc import Callable
 from functools import cache
 from typing import Any
 
@@ -239,3 +242,10 @@ def test_outputs_that_share_memory_are_refused(rng: np.random.Generator) -> None
     rows = np.zeros((9, 2))
     with pytest.raises(sf.ShapeError, match="shares no memory with another array"):
         m.bind("bias", n=8, v=rows[:8], h=rows[1:])
+
+
+@pytest.mark.parametrize("take", [pickle.dumps, copy.copy, copy.deepcopy])
+def test_memory_of_c_is_neither_pickled_nor_copied(take: Callable[[object], object]) -> None:
+    """It was a TypeError of cffi's; a shallow copy shared the arrays."""
+    with pytest.raises(sf.SymofrosError, match="send the model, and bind the function there"):
+        take(model("double_pendulum", "c").bind("mass_matrix"))
