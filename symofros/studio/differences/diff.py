@@ -12,6 +12,7 @@ from typing import Any
 from symofros.base.arguments import checked
 from symofros.description import System
 from symofros.errors import ArgumentError, DescriptionError, Problem
+from symofros.exports.limits import listed
 from symofros.loading import applicable, load
 from symofros.mechanics.topology import find_problems
 from symofros.studio.differences.constraints import constraint_differences
@@ -235,12 +236,16 @@ def _notes(found: Findings) -> list[str]:
     notes = [f"{m.label}: not compared: {note}" for m in mechanisms for note in m.lost]
     # What readers leave out of couplings is missed in the comparison.
     notes += [f"{m.label}: {note}" for m in mechanisms for note in m.system.notes if "mimic" in note.lower()]
+    moves = [(found.a.parts[x].move, found.b.parts[y].move) for x, (y, _) in found.pairs.items()]
+    otherwise = [m.name for m, n in moves if m is not None and n is not None and m.driven != n.driven]
     inputs = [len(m.system.inputs) for m in mechanisms]
     if any(inputs):
         notes.append(f"actuators are not compared: {inputs[0]} in the first, {inputs[1]} in the second")
+    elif otherwise:
+        notes.append(f"which joints are driven is not compared; those driven in one alone: {listed(otherwise)}")
     if found.reframed:
-        listed = ", ".join(found.reframed[:5]) + (", ..." if len(found.reframed) > 5 else "")
-        notes.append(f"frames of {len(found.reframed)} links are placed otherwise, which changes no motion: {listed}")
+        links = f"{len(found.reframed)} links"
+        notes.append(f"frames of {links} are placed otherwise, which changes no motion: {listed(found.reframed)}")
     if found.is_cut:
         notes.append(f"the comparison ended after {MOST_DIFFERENCES} differences")
     return notes

@@ -10,7 +10,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.studio.differences.alignment import Close
-from symofros.studio.differences.mechanism import Body, Mechanism
+from symofros.studio.differences.mechanism import FOLLOWING, Body, Mechanism
 
 # What makes mechanisms different; the rest (limits, dissipation, springs, zero of coordinates) doesn't.
 MECHANICS = ("kinematics", "M", "g", "constraints")
@@ -116,8 +116,9 @@ def entries_of_joint(
     for name, of in zip(("lower limit", "upper limit"), ends, strict=True):
         if of in there:
             mapped[name] = sign * there[of] + offset
-    if "rest of the spring" in mapped:
-        mapped["rest of the spring"] = sign * mapped["rest of the spring"] + offset
+    for name, origin in (("rest of the spring", offset), ("push of the springs", 0.0)):
+        if name in mapped:
+            mapped[name] = sign * mapped[name] + origin
     for name in sorted(here.keys() | mapped.keys()):
         a, b = here.get(name), mapped.get(name)
         near = (
@@ -125,8 +126,8 @@ def entries_of_joint(
             and b is not None
             and abs(a - b) <= close.tolerance * max(float(offset != 0.0), abs(a), abs(b))
         )
-        lacks_spring = name == "rest of the spring" and (a is None or b is None)  # Its stiffness says so.
-        if not near and not lacks_spring:
+        lacks_other = name in FOLLOWING and (a is None or b is None)  # Another entry says so.
+        if not near and not lacks_other:
             yield name, a, b, (_changes(name),)
 
 

@@ -6,18 +6,23 @@ puts the frames of its links.
 
 from __future__ import annotations
 
-from collections.abc import Iterator
+import math
+from collections.abc import Iterator, Sequence
 from dataclasses import dataclass, field, replace
 
 import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.base.rotations import skew
-from symofros.description import IDENTITY_POSE, Beam, Damper, Friction, Joint, Pose, Spring, System
+from symofros.description import IDENTITY_POSE, Beam, Damper, Friction, Joint, JointElement, Pose, Spring, System
 from symofros.errors import DescriptionError, Problem
 from symofros.exports.interchange.rigid import RigidLink, rigid_links
+from symofros.exports.limits import listed
 from symofros.mechanics.topology import Numbers
 
+# Entries of friction beside its level, and those that mean nothing without another one.
+FRICTION = ("static friction", "smoothing of friction", "Stribeck speed", "sticking")
+FOLLOWING = frozenset({"rest of the spring", *FRICTION})
 # Bodies beyond which files are refused, so that hostile ones take bounded time.
 MOST_BODIES = 1000
 
@@ -71,6 +76,7 @@ class Move:
         placed: That frame in the carrier's, as the file states it.
         carrier: Index of the body that carries it; -1 for none.
         entries: Limits, damping, friction, springs, armature: name -> number, without those that are not there.
+        driven: Whether the joint has an input.
     """
 
     name: str
@@ -83,6 +89,7 @@ class Move:
     placed: Pose
     carrier: int
     entries: dict[str, float]
+    driven: bool
 
     @property
     def screws(self) -> Array:
@@ -134,8 +141,9 @@ class Mechanism:
         self.system, self.label, self.numbers = system, label, Numbers(system)
         _refuse(system, label)
         links, lost = rigid_links(system, None)
-        # Inputs of actuators and parameters say nothing of the mechanism.
-        self.lost = tuple(note for note in lost if not note.startswith(("parameters", "inputs", "efforts")))
+        # Inputs of actuators and parameters say nothing of the mechanism; of actuators another note tells.
+        silent = ("parameters", "inputs", *(("efforts",) if system.inputs else ()))
+        self.lost = (*(note for note in lost if not note.startswith(silent)), *_uncompared(system))
         self.gravity = self.numbers.values(system.gravity)
         self.bodies: list[Body] = []
         self.parts = [Part(-1, None)]
@@ -171,11 +179,14 @@ class Mechanism:
             axis = pose.R @ (direction / (np.linalg.norm(direction) or 1.0))
             pitch, name = self.numbers.value(joint.pitch) if joint.kind == "screw" else 0.0, joint.name
             entries = self._entries(joint, 0)
-            yield Move(name, joint.kind, joint.kind, axis, pose.p, pitch, pose, placed, carrier, entries)
+            yield Move(
+                name, joint.kind, joint.kind, axis, pose.p, pitch, pose, placed, carrier, entries, joint.actuated
+            )
         for k, single in enumerate(link.axes):
             kind, axis = "turn" if single.turns else "slide", pose.R @ np.array(single.direction)
             entries = self._entries(joint, k)
-            yield Move(single.name, kind, joint.kind, axis, pose.p, 0.0, pose, placed, -1 if k else carrier, entries)
+            at = -1 if k else carrier
+            yield Move(single.name, kind, joint.kind, axis, pose.p, 0.0, pose, placed, at, entries, joint.actuated)
 
     def _entries(self, joint: Joint, k: int) -> dict[str, float]:
         """Numbers of one coordinate of a joint."""
@@ -191,14 +202,38 @@ class Mechanism:
                 found["damping"] = found.get("damping", 0.0) + value(element.coefficient)
                 found["quadratic damping"] = found.get("quadratic damping", 0.0) + value(element.quadratic)
             elif element.coordinate == k and isinstance(element, Friction):
-                found["friction"] = found.get("friction", 0.0) + value(element.dynamic)
-            elif element.coordinate == k and isinstance(element, Spring):
-                found |= {"stiffness": value(element.stiffness), "rest of the spring": value(element.rest)}
-                found["cubic stiffness"] = value(element.cubic)
-        zero_is_none = {label: number for label, number in found.items() if number != 0.0 or "limit" in label}
-        if "stiffness" in found:
-            zero_is_none["rest of the spring"] = found["rest of the spring"]
-        return zero_is_none
+                found["damping"] = found.get("damping", 0.0) + value(element.viscous)
+                for label, number in self._friction(element).items():
+                    found[label] = found.get(label, 0.0) + number
+        found |= self._springs([e for e in joint.elements if isinstance(e, Spring) and e.coordinate == k])
+        return {
+            label: number for label, number in found.items() if number != 0.0 or "limit" in label or label in FOLLOWING
+        }
+
+    def _friction(self, element: Friction) -> dict[str, float]:
+        """Numbers of dry friction, those that are left out as the model takes them."""
+        value, dynamic = self.numbers.value, self.numbers.value(element.dynamic)
+        speed = value(element.minimum_velocity)
+        stribeck = 10.0 * speed if element.stribeck_velocity is None else value(element.stribeck_velocity)
+        static = dynamic if element.static is None else value(element.static)
+        numbers = dynamic, static, speed, stribeck if static > dynamic else 0.0, float(element.sticks)
+        return dict(zip(("friction", *FRICTION), numbers, strict=True))
+
+    def _springs(self, springs: Sequence[Spring]) -> dict[str, float]:
+        """The springs of a coordinate as one of the rest R, -F = C (q - R)^3 + K (q - R) + P; of a single one P = 0."""
+        value = self.numbers.value
+        terms = [(value(s.stiffness), value(s.cubic), value(s.rest)) for s in springs]
+        K, C = (math.fsum(column) for column in ([k for k, _, _ in terms], [c for _, c, _ in terms]))
+        rests = [rest for _, _, rest in terms]
+        total, first = C or K, rests[0] if rests else 0.0
+        if not total:
+            return {"push of the springs": math.fsum(-k * rest for k, _, rest in terms)}
+        # About the first rest, so that equal ones are kept to the last digit.
+        R = first + math.fsum((c if C else k) * (rest - first) for k, c, rest in terms) / total
+        stiffness = K + 3.0 * math.fsum(c * (R - rest) ** 2 for _, c, rest in terms)
+        push = math.fsum((c * (R - rest) ** 2 + k) * (R - rest) for k, c, rest in terms) if C else 0.0
+        entries = {"stiffness": stiffness, "cubic stiffness": C, "rest of the spring": R, "push of the springs": push}
+        return entries
 
     def massive(self, part: int) -> list[Body]:
         """The bodies of a part that have mass or inertia."""
@@ -237,6 +272,26 @@ class Mechanism:
         first = bodies[0] if bodies else self.bodies[there[0]] if there else self.carried_by(part)
         name = "+".join(body.name for body in bodies) or first.name
         return replace(first, name=name, mass=mass, center=center, inertia=inertia)
+
+
+def _uncompared(system: System) -> Iterator[str]:
+    """Elements of joints that have no entries, and when constraints hold."""
+    joints = [body.joint for body in system.bodies if body.joint is not None]
+    odd = {
+        joint.name: sorted({type(element).__name__ for element in joint.elements if _is_odd(element)})
+        for joint in joints
+    }
+    if any(odd.values()):
+        yield "elements of joints: " + listed([f"{name} ({', '.join(kinds)})" for name, kinds in odd.items() if kinds])
+    if system.switches:
+        yield "when constraints hold: " + listed([switch.constraint for switch in system.switches])
+
+
+def _is_odd(element: JointElement) -> bool:
+    """Whether an element has more than the entries say."""
+    if isinstance(element, Friction):
+        return element.factor != 1.0
+    return not isinstance(element, Damper | Spring)
 
 
 def _refuse(system: System, label: str) -> None:

@@ -91,7 +91,7 @@ def _body(link: RigidLink, gauges: dict[str, Pose], rng: np.random.Generator | N
 
 
 def _move(kind: str, axis: Array) -> Move:
-    return Move("", kind, kind, axis, np.zeros(3), 0.0, IDENTITY_POSE, IDENTITY_POSE, -1, {})
+    return Move("", kind, kind, axis, np.zeros(3), 0.0, IDENTITY_POSE, IDENTITY_POSE, -1, {}, False)
 
 
 def _limits(limits: sf.Limits | None, sign: float, offset: float) -> sf.Limits | None:

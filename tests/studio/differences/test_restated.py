@@ -40,20 +40,62 @@ def pendulum(**joint: object) -> sf.System:
     return sf.System("p", (sf.RigidBody("arm", sf.Joint("turn", "revolute", **stated), inertia),))  # type: ignore[arg-type]
 
 
-ELEMENTS = {
-    "damping": ((sf.Damper(0.2),), "dissipation"),
-    "friction": ((sf.Friction(0.2),), "dissipation"),
-    "stiffness": ((sf.Spring(3.0),), "springs"),
+DRY = sf.Friction(0.2, 0.3, 0.01, stribeck_velocity=0.1)
+# Entry that differs -> elements of the first and of the second, and what they change.
+ELEMENTS: dict[str, tuple[tuple[object, ...], tuple[object, ...], str]] = {
+    "damping": ((), (sf.Damper(0.2),), "dissipation"),
+    "friction": ((), (sf.Friction(0.2),), "dissipation"),
+    "static friction": ((DRY,), (replace(DRY, static=0.4),), "dissipation"),
+    "smoothing of friction": ((DRY,), (replace(DRY, minimum_velocity=0.02),), "dissipation"),
+    "Stribeck speed": ((DRY,), (replace(DRY, stribeck_velocity=0.2),), "dissipation"),
+    "sticking": ((DRY,), (replace(DRY, sticks=True),), "dissipation"),
+    "stiffness": ((), (sf.Spring(3.0),), "springs"),
+    "rest of the spring": ((sf.Spring(2.0, 0.1), sf.Spring(3.0)), (sf.Spring(5.0),), "springs"),
+    "push of the springs": ((sf.Spring(1.0, 0.0, 1.0),), (sf.Spring(1.0, 0.5), sf.Spring(0.0, 0.0, 1.0)), "springs"),
 }
 
 
 @pytest.mark.parametrize("entry", ELEMENTS)
 def test_other_elements_leave_the_mechanism_the_same(entry: str) -> None:
-    elements, changes = ELEMENTS[entry]
-    found = sf.diff(pendulum(), pendulum(elements=elements))
+    one, other, changes = ELEMENTS[entry]
+    found = sf.diff(pendulum(elements=one), pendulum(elements=other))
     first = found.first_difference
     assert found.same and not found.identical and first is not None
     assert (first.entry, first.joint, first.link, first.changes) == (entry, "turn", "arm", (changes,))
+
+
+SPRINGS = (sf.Spring(2.0, 0.3, 4.0), sf.Spring(5.0, -0.2), sf.Spring(0.0, 0.7, 3.0))
+
+
+def test_elements_of_the_same_force_are_the_same() -> None:
+    """Springs in parallel are one; the viscous part of friction is a damper. Coordinates of the second are 0.4 - q."""
+    apart = (*SPRINGS, sf.Friction(0.2, viscous=0.5), sf.Damper(0.1))
+    assert sf.diff(pendulum(elements=apart), pendulum(elements=apart[::-1])).identical
+    damped = (*SPRINGS, sf.Friction(0.2), sf.Damper(0.6))
+    assert sf.diff(pendulum(elements=apart), pendulum(elements=damped)).identical
+    turned = [replace(spring, rest=0.4 - float(spring.rest)) for spring in SPRINGS]  # type: ignore[arg-type]
+    placed = sf.Rotation.axis_angle((0, 1, 0), 0.4)
+    other = pendulum(elements=turned, axis=(0, -1, 0), rotation=placed, limits=sf.Limits(-1.6, 1.4))
+    found = sf.diff(pendulum(elements=SPRINGS), other)
+    ((_, _, sign, offset),) = found.coordinates
+    assert sign == -1.0 and offset == pytest.approx(0.4)
+    assert {item.changes for item in found.differences} == {COORDINATES}, str(found)
+
+
+@pytest.mark.parametrize(
+    ("stated", "note"),
+    [
+        ({"elements": (sf.Stop(500.0, 5.0, -1.0, 1.0),)}, "elements of joints: turn (Stop)"),
+        ({"elements": (sf.LuGre(1.0, 50.0),)}, "elements of joints: turn (LuGre)"),
+        ({"effort": ("-3*turn",)}, "efforts by formula dropped: turn"),
+        ({"actuated": True}, "those driven in one alone: turn"),
+    ],
+)
+def test_what_a_joint_has_beside_its_entries_is_noted(stated: dict[str, object], note: str) -> None:
+    for pair in ((pendulum(), pendulum(**stated)), (pendulum(**stated), pendulum())):
+        (said,) = sf.diff(*pair).notes
+        assert note in said
+    assert not sf.diff(pendulum(), pendulum()).notes
 
 
 def test_the_sign_of_a_coordinate_takes_its_limits_along() -> None:
