@@ -10,8 +10,9 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.simulation.results.examination import batch_examination
+from symofros.simulation.results.examination import batch_examination, diagnosis
 from symofros.simulation.results.examination.finer_steps import Changed
+from symofros.simulation.results.examination.step_size import examine_run
 from symofros.simulation.results.examination.switched_run import SwitchedRun
 from symofros.simulation.settings import Settings
 from tests.simulation.mechanisms import slide
@@ -154,6 +155,16 @@ def test_amplification_of_errors_by_contacts_is_noted() -> None:
     for dt, wanted in ((4e-3, (note,)), (2e-4, ())):
         batch = sf.simulate_batch(model, *rows, 1.2, dt=dt)
         assert batch.outcome(0).notes == batch.outcome(1).notes == wanted
+
+
+def test_a_motion_of_a_batch_with_compliant_contacts_is_examined_once(monkeypatch: pytest.MonkeyPatch) -> None:
+    """Its steps, and then the whole."""
+    examined = list[Any]()
+    for module in (diagnosis, batch_examination):
+        monkeypatch.setattr(module, "examine_run", lambda *run, **of: examined.append(run) or examine_run(*run, **of))
+    batch = sf.simulate_batch(box_over_floor(), [[0.0, 0.3, 0.6]] * 2, [[0.5, 0.0, 1.0]] * 2, 1.2, dt=4e-3)
+    assert "over its contacts" in batch.outcome(1).notes[0] and len(examined) == 1
+    assert "over its contacts" in str(batch) and len(examined) == 2
 
 
 def relay() -> Motion:
