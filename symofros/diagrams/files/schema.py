@@ -6,7 +6,7 @@ import dataclasses
 import inspect
 import json
 import re
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from contextlib import suppress
 from pathlib import Path
 from types import NoneType, UnionType
@@ -48,7 +48,7 @@ def of_type(kind: Any) -> Plain:
         return {"enum": list(arguments)}
     if origin in (Union, UnionType):
         return {"anyOf": [of_type(item) for item in arguments]}
-    if origin in (tuple, list):
+    if origin in (tuple, list, Sequence):
         is_open = len(arguments) == 1 or arguments[-1] is Ellipsis
         if is_open:
             return {"type": "array", "items": of_type(arguments[0])}
@@ -56,7 +56,7 @@ def of_type(kind: Any) -> Plain:
     if isinstance(origin, type) and issubclass(origin, Mapping):
         return {"type": "object", "additionalProperties": of_type(arguments[1])}
     if dataclasses.is_dataclass(kind) and isinstance(kind, type):
-        return _object({name: of_type(item) for name, item in types_of(kind).items()}, sorted(required(kind)))
+        return _object(_described(kind), sorted(required(kind)))
     return {"description": words_for(kind)}
 
 
@@ -91,16 +91,24 @@ def json_schema() -> Plain:
 
 def _block(kind: str, owner: type[Block]) -> Plain:
     properties: Plain = {"kind": {"const": kind}}
-    descriptions, defaults = _attributes(owner), _defaults(owner)
-    for name, item in types_of(owner).items():
+    defaults = _defaults(owner)
+    for name, item in _described(owner).items():
         if name != "name":
-            described = {"description": descriptions[name]} if name in descriptions else {}
-            properties[entry_of(name)] = of_type(item) | described | defaults.get(name, {})
+            properties[entry_of(name)] = item | defaults.get(name, {})
     schema = _object(properties | {"inputs": _TEXTS}, ["kind", *sorted(map(entry_of, required(owner) - {"name"}))])
     return {"description": (inspect.getdoc(owner) or "").split("\n")[0], **schema}
 
 
-def _attributes(owner: type[Block]) -> dict[str, str]:
+def _described(owner: type[Any]) -> dict[str, Plain]:
+    """Field of a class -> its schema, with what the class says of it."""
+    descriptions = _attributes(owner)
+    return {
+        name: of_type(item) | ({"description": descriptions[name]} if name in descriptions else {})
+        for name, item in types_of(owner).items()
+    }
+
+
+def _attributes(owner: type[Any]) -> dict[str, str]:
     """Field -> its description in the docstrings of a class and its bases."""
     descriptions: dict[str, str] = {}
     for base in reversed(owner.__mro__):

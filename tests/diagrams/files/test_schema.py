@@ -14,6 +14,12 @@ from symofros.diagrams.files.schema import SCHEMA_FILE, json_schema, schema_text
 from tests.diagrams.files.cases import TEXT
 
 PART = "parts:\n  p: {file: x.yaml, inputs: {a: b.c}}\n  r: {diagram: {blocks: {s: {kind: scope, signals: [x]}}}}\n"
+MACHINE = """  mode:
+    kind: state_machine
+    machine_states: {off: {}, on: {during: {y: 1}}}
+    outputs: {y: 0}
+    transitions: [{leave: off, enter: on, when: t - 1}]
+"""
 
 
 @cache
@@ -36,6 +42,7 @@ def test_the_diagram_schema_is_legal() -> None:
 def test_the_diagram_schema_accepts_what_the_reader_accepts() -> None:
     check(TEXT)
     check(TEXT + PART)
+    check(TEXT.replace("blocks:\n", "blocks:\n" + MACHINE, 1))
 
 
 @pytest.mark.parametrize(
@@ -49,9 +56,11 @@ def test_the_diagram_schema_accepts_what_the_reader_accepts() -> None:
         ("signals: [plant.q]", "signals: plant.q"),
         ("symofros_diagram: 1", "symofros_diagram: 2"),
         ("{file: x.yaml,", "{file: x.yaml, diagram: {},"),
+        ("leave: off", "from: off"),
     ],
 )
 def test_the_diagram_schema_refuses_what_the_reader_refuses(old: str, new: str) -> None:
-    assert old in TEXT + PART
+    text = (TEXT + PART).replace("blocks:\n", "blocks:\n" + MACHINE, 1)
+    assert old in text
     with pytest.raises(jsonschema.ValidationError):
-        check((TEXT + PART).replace(old, new, 1))
+        check(text.replace(old, new, 1))

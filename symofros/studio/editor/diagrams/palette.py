@@ -2,9 +2,11 @@
 
 from __future__ import annotations
 
+import dataclasses
 import inspect
+from collections.abc import Mapping, Sequence
 from functools import cache
-from typing import Any
+from typing import Any, get_args, get_origin
 
 from symofros.diagrams.block import Block
 from symofros.diagrams.files.fields import required, types_of
@@ -69,6 +71,12 @@ def _first(kind: Any) -> Any:
     """What a field that has no default begins as: something of its type, which its author then states."""
     if kind is str:
         return ""
-    if kind in (int, float):
-        return 1
-    return ["x"] if getattr(kind, "__origin__", None) is tuple else 1
+    origin = get_origin(kind)
+    if origin in (tuple, list, Sequence):
+        return ["x"]
+    if origin is Mapping:
+        return {"x": _first(get_args(kind)[1])}
+    if dataclasses.is_dataclass(kind) and isinstance(kind, type):
+        types = types_of(kind)
+        return {name: _first(types[name]) for name in required(kind)}
+    return 1

@@ -257,7 +257,9 @@ def import_model(request: Json, tell: Tell) -> Json:
     """A description of another format as the text of a native one."""
     tell(0, 1, "reading")
     system = sf.load(request["file"])
-    return {"text": write_yaml(system), "notes": list(system.notes)}
+    name = Path(request["file"]).name
+    drawn = [f"visual shapes and meshes of {name} are left out: `symofros view {name}` draws them"]
+    return {"text": write_yaml(system), "notes": [*system.notes, *(drawn if system.visuals else [])]}
 
 
 TASKS: dict[str, Callable[[Json, Tell], Any]] = {

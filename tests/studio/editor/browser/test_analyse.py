@@ -115,6 +115,7 @@ def test_a_parameter_is_swept_and_an_event_found(arm: Server, page: Page, faults
     steps.run(page, "Simulate…")
     steps.window(page).get_by_role("button", name="Add an event").click()
     expect(steps.window(page).get_by_role("button", name="Simulate", exact=True)).to_be_disabled()
+    expect(steps.window(page).get_by_placeholder("formula, zero at the event")).to_be_visible()
     steps.fill(page, "Formula of event 1", "q1 - 1")
     steps.window(page).get_by_label("ends the run").check()
     steps.fill(page, "Duration", "2")
@@ -124,3 +125,26 @@ def test_a_parameter_is_swept_and_an_event_found(arm: Server, page: Page, faults
     expect(steps.results(page).get_by_role("row", name="event 1")).to_be_visible(timeout=steps.JOB)
     run_end = steps.results(page).get_by_role("slider", name="Time [s]").get_attribute("max")
     assert run_end is not None and 0.1 < float(run_end) < 2.0
+
+
+def test_a_model_without_parameters_says_what_a_sweep_needs(opened: Serve, page: Page) -> None:
+    opened("empty.yaml")
+    page.get_by_role("button", name="Rigid body", exact=True).click()
+    steps.problems(page, 0)
+    steps.run(page, "Analyse…")
+    steps.window(page).get_by_label("Sweep").check()
+    expect(steps.window(page)).to_contain_text("The model has no parameter that a sweep could change.")
+    expect(steps.window(page).get_by_label("From", exact=True)).to_have_count(0)
+    expect(steps.window(page).get_by_role("button", name="Analyse", exact=True)).to_be_disabled()
+
+
+def test_a_body_that_is_drawn_falls(opened: Serve, page: Page) -> None:
+    """A body as the palette has it, simulated as the window says: something moves."""
+    opened("empty.yaml")
+    page.get_by_role("button", name="Rigid body", exact=True).click()
+    steps.problems(page, 0)
+    steps.job(page, "Simulate", Duration="0.5")
+    with page.expect_download() as saved:
+        steps.results(page).get_by_role("button", name="CSV").first.click()
+    last = saved.value.path().read_text("utf-8").splitlines()[-1]
+    assert abs(float(last.split(",")[1])) > 0.5

@@ -283,3 +283,29 @@ def test_wires_of_a_new_block_are_drawn_when_it_is_measured_late(
     page.get_by_role("menuitem", name="Group into a subsystem").click()
     for wire in ("parts/subsystem/inputs/q", "parts/subsystem/inputs/v", "blocks/plant/inputs/u"):
         expect(steps.wire(page, wire)).to_have_count(1)
+
+
+def test_a_state_machine_is_drawn_by_the_mouse(serve: Serve, page: Page) -> None:
+    page.goto(serve("law.yaml", content="symofros_diagram: 1\nblocks: {}\n").url)
+    palette = page.get_by_role("navigation", name="Palette")
+    palette.get_by_role("button", name="Generic").click()
+    # Every name can be read, and nothing lies beside the palette.
+    assert palette.evaluate("nav => nav.scrollWidth <= nav.clientWidth")
+    assert palette.locator(".fold").evaluate_all("all => all.every(one => one.scrollWidth <= one.clientWidth)")
+    palette.get_by_role("button", name="state machine", exact=True).click()
+    steps.problems(page, 0)  # Of one state.
+    steps.open_window(page, "blocks/state_machine")
+    steps.fill(page, "Name of a new entry of states", "open")
+    states = steps.window(page).get_by_role("group", name="States", exact=True)
+    states.get_by_role("button", name="Add", exact=True).last.click()
+    transitions = steps.window(page).get_by_role("group", name="Transitions", exact=True)
+    transitions.get_by_role("button", name="Add", exact=True).click()
+    transitions.get_by_label("Leave", exact=True).select_option("x")
+    transitions.get_by_label("Enter", exact=True).select_option("open")
+    transitions.get_by_label("When", exact=True).fill("t - 0.5")
+    steps.fill(page, "Sample time", "0.1")
+    steps.accept(page)
+    steps.problems(page, 0)
+    with steps.ended(page):
+        page.get_by_role("banner").get_by_role("button", name="Run", exact=True).click()
+    expect(steps.results(page).get_by_role("img", name="state_machine.state")).to_be_visible()

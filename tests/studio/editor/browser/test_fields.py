@@ -45,6 +45,29 @@ def test_unknown_names_are_flagged_in_new_fields(arm: Server, page: Page) -> Non
     expect(alert).to_contain_text("unknown symbol 'weight'")
 
 
+def test_a_new_parent_takes_the_frame_of_the_old_one_away(arm: Server, page: Page) -> None:
+    steps.open_window(page, "bodies/lower")
+    frame = steps.window(page).get_by_label("Frame", exact=True)
+    expect(frame).to_have_value("elbow")
+    steps.window(page).get_by_label("Parent", exact=True).select_option("world")
+    expect(frame).to_have_value("")
+    steps.accept(page)
+    steps.problems(page, 0)
+
+
+def test_units_are_those_of_the_kind_of_joint(arm: Server, page: Page) -> None:
+    steps.open_window(page, "bodies/upper")
+    window = steps.window(page)
+    for kind, unit, other in (("revolute", "N m s/rad", "N s/m"), ("prismatic", "N s/m", "N m s/rad")):
+        steps.tab(page, "Joint")
+        window.get_by_label("Kind", exact=True).select_option(kind)
+        steps.tab(page, "Forces")
+        if kind == "revolute":
+            window.get_by_role("button", name="Add friction").click()
+        expect(window.get_by_text(unit, exact=True)).to_be_visible()
+        expect(window.get_by_text(other)).to_have_count(0)
+
+
 def test_text_typed_while_offline_is_kept_and_sent(opened: Serve, serve: Serve, page: Page) -> None:
     server = opened("arm.yaml", source=steps.PENDULUM)
     page.get_by_role("tab", name="YAML").click()  # The text editor is loaded.

@@ -16,6 +16,7 @@ pytestmark = pytest.mark.browser
 URDF = """<robot name="arm">
   <link name="base"/>
   <link name="boom">
+    <visual><geometry><sphere radius="0.1"/></geometry></visual>
     <inertial><mass value="2"/><inertia ixx="1" iyy="1" izz="1" ixy="0" ixz="0" iyz="0"/></inertial>
   </link>
   <joint name="slew" type="continuous"><parent link="base"/><child link="boom"/><axis xyz="0 0 1"/></joint>
@@ -32,6 +33,11 @@ def test_a_urdf_is_imported(serve: Serve, page: Page, tmp_path: Path) -> None:
     chooser.value.set_files(tmp_path / "robot.urdf")
     expect(steps.block(page, "bodies/boom")).to_contain_text("slew")
     expect(page.get_by_role("heading", level=1)).to_contain_text("unsaved")
+    # What is not in the document is said, until it is read.
+    remarks = page.get_by_role("status").filter(has_text="The import left out or changed")
+    expect(remarks).to_contain_text("`symofros view robot.urdf` draws them")
+    page.get_by_role("button", name="Close what the import says").click()
+    expect(remarks).to_have_count(0)
 
 
 @pytest.mark.parametrize("kind", ["SVG", "PNG"])

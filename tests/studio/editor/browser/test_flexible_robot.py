@@ -54,7 +54,7 @@ def test_a_beam_is_stated_by_material_and_shape_and_shows_its_frequencies(opened
     expect(figures).to_contain_text("Hz")
     steps.window(page).get_by_label("stated by").select_option("shape")
     expect(figures).to_contain_text("rhoA 0.27 kg/m")
-    steps.fill(page, "Rho", "5400")
+    steps.fill(page, "Density", "5400")
     expect(figures).to_contain_text("rhoA 0.54 kg/m")
     expect(figures).to_contain_text("bending along y 11.63")
     steps.accept(page)

@@ -42,12 +42,19 @@ def actuate(page: Page) -> None:
     steps.window(page).get_by_label("Actuated").check()
 
 
+def turn_about_z(page: Page) -> None:
+    """The arm moves in a horizontal plane, in which its beam bends."""
+    for axis, value in zip("xyz", "001", strict=True):
+        steps.fill(page, f"Axis {axis}", value)
+
+
 def draw_the_arm(page: Page, picture: Picture) -> None:
     page.get_by_role("button", name="Rigid body", exact=True).drag_to(
         page.locator(".react-flow__pane"), target_position={"x": 260, "y": 180}
     )
     steps.open_window(page, "bodies/body")
     steps.fill(page, "Name", "upper")
+    turn_about_z(page)
     steps.tab(page, "Inertia")
     steps.window(page).get_by_label("Inertia by").select_option("solid")
     steps.fill(page, "Density", "1200")
@@ -63,10 +70,12 @@ def draw_the_arm(page: Page, picture: Picture) -> None:
     page.get_by_role("button", name="Flexible beam", exact=True).click()
     steps.open_window(page, "bodies/beam")
     steps.fill(page, "Name", "fore")
+    bending = {"Shape functions along y": "2", "Shape functions along z": "", "EI_y": "", "EI_z": "100"}
+    for field, text in bending.items():
+        steps.fill(page, field, text)
     steps.tab(page, "Joint")
     steps.window(page).get_by_label("Kind", exact=True).select_option("revolute")
-    for axis, value in zip("xyz", "001", strict=True):
-        steps.fill(page, f"Axis {axis}", value)
+    turn_about_z(page)
     actuate(page)
     steps.accept(page)
     steps.problems(page, 0)

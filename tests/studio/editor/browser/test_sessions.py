@@ -79,8 +79,6 @@ def test_three_bodies_are_drawn_run_played_checked_and_exported(
     for block, name in (("bodies/body", "upper"), ("bodies/body2", "fore")):
         hand.twice(steps.block(page, block).locator(".block-title"))
         page.keyboard.type(name)  # The window opens with its name chosen.
-        for axis, value in (("Axis y", "1"), ("Axis z", "0")):
-            hand.put(steps.window(page).get_by_label(axis, exact=True), value)
         hand.press(steps.window(page).get_by_role("button", name="OK"))
         expect(steps.window(page)).to_have_count(0)
     steps.problems(page, 0)
@@ -123,7 +121,7 @@ def test_a_four_bar_is_drawn_and_run(opened: Serve, page: Page, hand: Hand) -> N
     ]
     hand.draw(*ends)
     hand.press(steps.window(page).get_by_role("button", name="Closure"))
-    hand.press(steps.window(page).get_by_label("z", exact=True).first)
+    hand.press(steps.window(page).get_by_label("y", exact=True).first)
     hand.press(steps.window(page).get_by_role("button", name="OK"))
     steps.problems(page, 0)
     hand.press(page.get_by_role("tab", name="3-D"))

@@ -117,9 +117,15 @@ def test_a_job_imports_a_file(client: TestClient, folder: Path) -> None:
     answer = client.post("/api/import", json={"name": "my robot.urdf", "text": urdf})
     found = answer.json()
     assert answer.status_code == 200 and found["path"] == "my_robot.yaml" and found["dirty"]
-    assert found["problems"] == [] and list(found["data"]["bodies"]) == ["a", "b"] and isinstance(found["notes"], list)
-    (folder / "r.urdf").write_text(urdf)
-    assert client.post("/api/import", json={"path": "r.urdf"}).json()["path"] == "r.yaml"
+    assert (
+        found["problems"] == []
+        and list(found["data"]["bodies"]) == ["a", "b"]
+        and "draws them" not in str(found["notes"])
+    )
+    drawn = '<link name="b"><visual><geometry><sphere radius="0.1"/></geometry></visual>'
+    (folder / "r.urdf").write_text(urdf.replace('<link name="b">', drawn))
+    found = client.post("/api/import", json={"path": "r.urdf"}).json()
+    assert found["path"] == "r.yaml" and "`symofros view r.urdf` draws them" in found["notes"][-1]
     for wrong in (
         {"name": "x.urdf", "text": "<robot"},
         {"name": "x.exe", "text": ""},

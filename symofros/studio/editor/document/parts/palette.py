@@ -16,7 +16,8 @@ _UNITS_OF_MOTION = "m, kg, s, rad, N, N m, m/s, rad/s, m/s^2, kg m^2"
 _UNITS_OF_MATERIAL = "kg/m, N/m, N m/rad, N s/m, N m s/rad, N m^2, kg m, m^2, Pa, kg/m^3"
 UNITS = (*_UNITS_OF_MOTION.split(", "), *_UNITS_OF_MATERIAL.split(", "))
 
-_REVOLUTE = {"kind": "revolute", "axis": [0, 0, 1]}
+# Across gravity: what is drawn and simulated moves, and a beam bends under its weight.
+_REVOLUTE = {"kind": "revolute", "axis": [0, 1, 0]}
 _ANCHORS = {"first": {"body": "world"}, "second": {"body": "world"}}
 
 PALETTE: tuple[Json, ...] = (
@@ -48,7 +49,7 @@ PALETTE: tuple[Json, ...] = (
         "help": "A slender elastic body along x, clamped at its root, with one frame at its tip.",
         "template": {
             "joint": {"kind": "fixed"},
-            "beam": {"length": 1.0, "rhoA": 1.0, "EI_z": 100.0, "bend_y": 2},
+            "beam": {"length": 1.0, "rhoA": 1.0, "EI_y": 100.0, "bend_z": 2},
             "frames": {"tip": {}},
         },
     },

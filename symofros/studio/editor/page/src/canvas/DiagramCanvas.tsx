@@ -119,7 +119,7 @@ export function DiagramCanvas() {
         <Panel position="top-center" className="quiet">
           {undrawn > 0
             ? `${undrawn} blocks are more than the ${MOST_DRAWN} that are drawn: the text has them all.`
-            : "Drag a model and blocks from the left onto the canvas, or click them there."}
+            : "Drag a model and blocks from the left onto the canvas, or click them there; then draw from output to input."}
         </Panel>
       ) : null}
     </Board>

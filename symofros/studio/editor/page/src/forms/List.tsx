@@ -22,16 +22,11 @@ function swapped(list: Json[], place: number): Json[] {
 }
 
 /** Buttons that add an item: one a kind, where an item is one of several kinds. */
-function Adders({ described, add }: { described: Field; add(item: Json): void }) {
+function Adders({ item, described, add }: { item: JsonMap; described: Field; add(item: Json): void }) {
   const { root } = useForm();
   if (described.shape.kind !== "one of") {
-    const { shape } = described;
-    const fresh =
-      shape.kind === "record"
-        ? Object.fromEntries(shape.required.map((key) => [key, start(root, shape.properties[key] as JsonMap)]))
-        : 0;
     return (
-      <button type="button" className="small" onClick={() => add(fresh)}>
+      <button type="button" className="small" onClick={() => add(start(root, item))}>
         Add
       </button>
     );
@@ -79,7 +74,7 @@ export function ListField({ value, onChange, path, label, item }: Props) {
         </div>
       ))}
       <div className="adders">
-        <Adders described={described} add={(fresh) => change([...list, fresh])} />
+        <Adders item={item} described={described} add={(fresh) => change([...list, fresh])} />
       </div>
     </div>
   );

@@ -2,6 +2,7 @@ import type { Json, JsonMap, Path } from "../api/types";
 import { isMap } from "../model/paths";
 import { FieldControl } from "./Field";
 import { useForm } from "./context";
+import { isReference } from "./Reference";
 import { field, label as words } from "./schema";
 
 interface Props {
@@ -13,7 +14,7 @@ interface Props {
 }
 
 /** What a record of required fields starts as. */
-export function start(root: JsonMap, schema: JsonMap): Json {
+export function start(root: JsonMap, schema: JsonMap, name = ""): Json {
   const { shape, fallback } = field(root, schema);
   if (fallback !== undefined && fallback !== null) return fallback;
   switch (shape.kind) {
@@ -26,7 +27,7 @@ export function start(root: JsonMap, schema: JsonMap): Json {
         Array.from({ length: shape.columns }, (_, j) => (i === j ? 1 : 0)),
       );
     case "record":
-      return Object.fromEntries(shape.required.map((key) => [key, start(root, shape.properties[key] as JsonMap)]));
+      return Object.fromEntries(shape.required.map((key) => [key, start(root, shape.properties[key] as JsonMap, key)]));
     case "list":
     case "set":
       return [];
@@ -42,7 +43,7 @@ export function start(root: JsonMap, schema: JsonMap): Json {
     case "value":
       return 0;
     case "text":
-      return "world";
+      return isReference(name, shape.kind) ? "world" : "";
   }
 }
 

@@ -1,8 +1,10 @@
 import type { Json, Path } from "../api/types";
-import { at, isMap, replaced, same } from "../model/paths";
+import { at, isMap, mapAt, same } from "../model/paths";
 import { useStore } from "../store/store";
 import { useForm } from "./context";
 import { FieldControl } from "./Field";
+import { unitAt } from "../model/joints";
+import { changed } from "./Reference";
 import { field, label, type Shape, unitOfField } from "./schema";
 
 interface Props {
@@ -37,7 +39,7 @@ function Row({
   path: Path;
   shape: Props["shape"];
 }) {
-  const { root } = useForm();
+  const { root, data, draft } = useForm();
   const schema = shape.properties[name];
   const value = isMap(record) ? record[name] : undefined;
   const place = [...path, name];
@@ -45,6 +47,8 @@ function Row({
   if (!isMap(schema)) return null;
   const described = field(root, schema, !shape.required.includes(name));
   const words = label(name, shape.name);
+  const entry = draft(place)?.value;
+  const unit = unitAt(isMap(entry) ? mapAt(entry, ["joint"]) : {}, unitOfField(name, described));
   const isFormula = described.shape.kind === "formula" || described.shape.kind === "vector";
   return (
     <div className="row">
@@ -56,7 +60,7 @@ function Row({
           name={name}
           field={described}
           value={value}
-          onChange={(next) => onChange(replaced(record, name, next))}
+          onChange={(next) => onChange(changed(data, record, name, next))}
           path={place}
           label={words}
           siblings={record}
@@ -67,7 +71,7 @@ function Row({
           </div>
         )}
       </div>
-      <span className="row-unit">{unitOfField(name, described)}</span>
+      <span className="row-unit">{unit}</span>
     </div>
   );
 }

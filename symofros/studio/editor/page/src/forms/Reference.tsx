@@ -1,6 +1,6 @@
-import type { Json } from "../api/types";
+import type { Json, JsonMap } from "../api/types";
 import { bodyNames, frameNames } from "../model/names";
-import { textAt } from "../model/paths";
+import { replaced, textAt } from "../model/paths";
 import { useForm } from "./context";
 
 const BODY_KEYS = ["parent", "body", "carrier"];
@@ -18,6 +18,15 @@ interface Props {
 /** Whether a property names a body or a frame, so that it is chosen, not typed. */
 export function isReference(name: string, type: string): boolean {
   return type === "text" && (BODY_KEYS.includes(name) || name === "frame" || name === "at");
+}
+
+/** A record with one property changed: the frame of another body goes with that body, unless the new one has it, too. */
+export function changed(data: JsonMap, record: Json | undefined, name: string, next: Json | undefined): Json {
+  const value = replaced(record, name, next);
+  const frame = textAt(value, ["frame"]);
+  if (!BODY_KEYS.includes(name) || frame === undefined) return value;
+  const isKnown = typeof next === "string" && frameNames(data, next).includes(frame);
+  return isKnown ? value : replaced(value, "frame", undefined);
 }
 
 function Options({ name, siblings, without }: { name: string; siblings: Json | undefined; without: string }) {

@@ -140,6 +140,9 @@ const LABELS: Record<string, string> = {
   period: "Sample time",
   offset: "First sample",
   kind_: "Form",
+  rtol: "Relative tolerance",
+  rho: "Density",
+  machine_states: "States",
   t0: "Start",
   t_end: "End",
   dt: "Step",
@@ -161,8 +164,9 @@ const UNITS: Record<string, string> = {
   realtime: "× clock",
 };
 
-/** Unit of a property: what its description says, or what all properties of that name have. */
-export const unitOfField = (key: string, { unit }: Field): string => unit || (UNITS[key] ?? "");
+/** Unit of a property: what its description says, or what all properties of that name have; a flag has none. */
+export const unitOfField = (key: string, { unit, shape }: Field): string =>
+  shape.kind === "flag" ? "" : unit || (UNITS[key] ?? "");
 
 /** A property's name in words, in a record of the schema; symbols such as EI_z stay as they are. */
 export function label(key: string, record = ""): string {

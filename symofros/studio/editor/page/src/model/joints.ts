@@ -40,6 +40,14 @@ export function coordinatesOf(joint: JsonMap, name: string): Quantity[] {
   return (kind?.coordinates ?? []).map((suffix, i) => ({ name: suffixed(name, suffix), unit: kind?.units[i] ?? "" }));
 }
 
+/** Which of two units, such as `N m or N`, a joint has that only turns, or only slides; both of another one. */
+export function unitAt(joint: JsonMap, unit: string): string {
+  const [turning, sliding] = unit.split(" or ");
+  const [of, ...others] = new Set(JOINT_KINDS[String(joint["kind"])]?.units);
+  if (sliding === undefined || turning === undefined || of === undefined || others.length > 0) return unit;
+  return of === "rad" ? turning : sliding;
+}
+
 /** Its speeds: named as the coordinates whose rates they are, or velocities in axes of the body. */
 export function speedsOf(joint: JsonMap, name: string): Quantity[] {
   const velocities = JOINT_KINDS[String(joint["kind"])]?.quasi_velocities ?? null;

@@ -1,5 +1,5 @@
 import { discard, refresh, reload, save } from "../store/files";
-import { hush, useStore } from "../store/store";
+import { hush, update, useStore } from "../store/store";
 import { IconButton } from "./IconButton";
 
 /** What concerns the whole page: the server is gone, unsaved work was found. */
@@ -8,6 +8,7 @@ export function Banners() {
   const recovered = useStore((state) => state.document?.recovered === true);
   const unkept = useStore((state) => state.document?.unkept ?? null);
   const changed = useStore((state) => state.document?.disk_changed === true);
+  const imported = useStore((state) => state.imported);
   return (
     <>
       {link === "lost" ? (
@@ -39,6 +40,12 @@ export function Banners() {
           <button type="button" className="small" onClick={() => void reload()}>
             Take the text on disk
           </button>
+        </div>
+      ) : null}
+      {imported.length > 0 ? (
+        <div className="banner" role="status">
+          <span>The import left out or changed: {imported.join("; ")}.</span>
+          <IconButton glyph="close" label="Close what the import says" onClick={() => update({ imported: [] })} />
         </div>
       ) : null}
       {recovered ? (

@@ -13,10 +13,12 @@ async function replace(address: string, body: object): Promise<void> {
   const closeAsking = closing();
   await settle();
   const change = async (discard: boolean, close = closing()): Promise<void> => {
-    const document = await ordered(() => post<Document>(address, { ...body, discard }));
-    if (document === undefined) return;
+    const answer = await ordered(() => post<Document & { notes?: string[] }>(address, { ...body, discard }));
+    if (answer === undefined) return;
+    const { notes = [], ...document } = answer;
     accept(document);
     close();
+    update({ imported: notes });
   };
   const { document } = now();
   if (document?.dirty === true && isBegun(document)) show({ kind: "discard", proceed: () => void change(true) });

@@ -94,6 +94,8 @@ export interface OfDocument {
   posing: Pose;
   /** Why it did not go where it was moved to. */
   stuck: string;
+  /** What the import of this document left out or changed. */
+  imported: readonly string[];
 }
 
 /** What a window asked last, of each document by its path: it is likely to be asked again. */
@@ -140,6 +142,7 @@ export const OF_NEW_DOCUMENT: OfDocument = {
   view: null,
   posing: {},
   stuck: "",
+  imported: [],
 };
 
 export const useStore = create<State>(() => ({

@@ -116,7 +116,7 @@ export function BeamSection({ beam, onChange, path, properties, others }: Props)
     <>
       <div className="row">
         <label className="row-label" htmlFor="section-by">
-          stated by
+          Stated by
         </label>
         <div className="row-control">
           <select

@@ -39,6 +39,7 @@ export function Events({ asked, set }: Props) {
           <input
             className="number"
             aria-label={`Formula of event ${i + 1}`}
+            placeholder="formula, zero at the event"
             title="Of coordinates, speeds, inputs, parameters and t; its zeros are found"
             value={event.formula}
             aria-invalid={event.formula.trim() === ""}

@@ -90,7 +90,9 @@ export function Help({ path, value }: { path: Path; value: JsonMap }) {
       <summary>Help</summary>
       {open ? (
         <div className="help-text" tabIndex={0} role="region" aria-label="Help">
-          {about === undefined ? null : <p className="about">{about}</p>}
+          {about?.split(/\n{2,}/).map((paragraph) => (
+            <p key={paragraph}>{paragraph.replaceAll(/\s+/g, " ")}</p>
+          ))}
           {names.map((name) => (
             <Record key={name} root={root} name={name} />
           ))}

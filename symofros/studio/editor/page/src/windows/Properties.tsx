@@ -4,7 +4,7 @@ import type { Json, Path } from "../api/types";
 import { fileOf } from "../canvas/open";
 import { Form, type FormContext } from "../forms/context";
 import { asTyped, changes, keyOf, type Renames } from "../model/changes";
-import { at, difference, isMap, textAt } from "../model/paths";
+import { at, difference, isMap, mapAt, textAt } from "../model/paths";
 import { Foot } from "../shell/Foot";
 import { TextRow } from "../shell/Row";
 import { Window } from "../shell/Window";
@@ -81,6 +81,8 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
       choices: (key, record) => {
         if (diagram === null) return null;
         if (key === "model") return Object.keys(diagram.models);
+        if (["leave", "enter", "first"].includes(key) && at(newest.current, ["kind"]) === "state_machine")
+          return Object.keys(mapAt(newest.current, ["machine_states"]));
         return key === "frame" ? (diagram.models[textAt(record, ["model"]) ?? ""]?.frames ?? null) : null;
       },
     }),

@@ -38,6 +38,13 @@ export function SweepFields({ asked, set }: Props) {
     const value = swept.find((each) => each.name === name)?.number ?? 1;
     set({ parameter: name, low: digits(0.5 * value), high: digits(1.5 * value) });
   };
+  if (swept.length === 0)
+    return (
+      <p className="quiet">
+        The model has no parameter that a sweep could change. Write a name in place of a number in a body's window, and
+        add it as a parameter there.
+      </p>
+    );
   return (
     <>
       <Row title="Parameter">
@@ -57,7 +64,7 @@ export function SweepFields({ asked, set }: Props) {
               id={id}
               className="number"
               value={asked[key]}
-              aria-invalid={!isNumber(asked[key])}
+              aria-invalid={asked.parameter !== "" && !isNumber(asked[key])}
               onChange={({ target }) => set({ [key]: target.value })}
             />
           )}
