@@ -82,7 +82,7 @@ def _summary(record: Record) -> str:
     kernels, rates = counted(len(record.kernels), "kernel"), counted(len(record.peers), "rate")
     return (
         f"{record.device}: {kernels} differ from C by at most {digits(worst)} in double precision; "
-        f"ours is the faster beside {len(slower)} of {rates} of {PEER}.{wrongly}"
+        f"ours is faster than {PEER} in {len(slower)} of {rates}.{wrongly}"
     )
 
 

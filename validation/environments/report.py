@@ -55,7 +55,7 @@ def compose(data: Data) -> Report:
     return Report(
         "Environments: numbers beside native C, speed beside a peer",
         f"{races}: ours differ from native C by at most {digits(worst)}; "
-        f"ours is the faster beside {beaten} of {counted(len(peers), 'time')} of peers{wrong}{failed}.",
+        f"ours is faster than the peer in {beaten} of {counted(len(peers), 'comparison')}{wrong}{failed}.",
         bool(data["ok"]),
         (_INTRO.format(turns=counted(data["turns"], "turn")), *failure_texts(failures), *failed_texts),
         (

@@ -49,12 +49,13 @@ def compose(data: Data) -> Report:
         "Real faults of releases: which are seen",
         f"{who} hits {said}; {counted(alarms, 'false alarm')} on {counted(len(asked), 'right release')}.",
         all(met),
-        (_TEXT, *_earlier(rows)),
+        (_TEXT,),
         (
             Section("Sets", (overview, failures), "sets"),
             Section("Faults", (Table.of(_HEAD, map(_line, rows)), Text(_COLUMNS, "soft")), "faults", all(met)),
             Section("By class", (Table.of(f"class | {_CLASSES}", _by("kind", rows)),), "classes"),
             Section("By engine", (Table.of(f"engine | {_CLASSES}", _by("engine", rows)),), "engines"),
+            *_earlier(rows),
             *(Section(row["name"], _shown(row), row["name"], page_only=True) for row in rows if _shown(row)),
         ),
         facts=(
@@ -82,11 +83,14 @@ on disk: both environments."""
 _CLASSES = "faults | hit | half a hit | miss | not asked"
 
 
-def _earlier(rows: Sequence[Row]) -> Iterator[str]:
+def _earlier(rows: Sequence[Row]) -> Iterator[Section]:
     """Which rows an update has kept."""
     if origins := by_origin(row["origin"] for row in rows if "origin" in row):
-        said = "; ".join(f"{number} on {date} by the harness of {revision}" for date, revision, number in origins)
-        yield f"Of the {len(rows)} faults, these were asked earlier: {said}."
+        table = Table.of(
+            "asked on | by the harness of | faults",
+            ((date, revision, str(number)) for date, revision, number in origins),
+        )
+        yield Section(f"When the {len(rows)} faults were asked, where earlier", (table,), "asked")
 
 
 def _hits(rows: Sequence[Row]) -> int:

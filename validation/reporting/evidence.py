@@ -28,7 +28,7 @@ _SAYING = frozenset({"reporting", "dashboard", "ci", "report.py", "reports", "fi
 # Folders that are read as files, or imported by name, wherever the harness is used.
 _BY_NAME = ("native", "corpus", "adapters", "procedures", "checking.py")
 OLDER = "older than the code it judges"
-UNKNOWN = "made before digests were kept"
+UNKNOWN = "made before reports stated which code they judge"
 MIXED = "made while the code changed"
 
 

@@ -62,7 +62,7 @@ def page(report: Report, provenance: Provenance | None = None, closing: str = ""
     parts = [
         f"<h1>{escape(report.title)}</h1>",
         f'<p class="verdict {_TONE[report.ok]}">{prose(report.summary)}</p>',
-        block(Text(f"This report {standing_text(standing)}.", "bad")) if standing else "",
+        block(Text(f"This report {standing_text(standing)}.", "short")) if standing else "",
         *(f'<div class="decisions">{block(one)}</div>' for one in report.decisions),
         _missed(report),
         f'<div class="tiles">{"".join(map(tile, report.facts))}</div>' if report.facts else "",

@@ -11,7 +11,7 @@ def page(report: Report, provenance: Provenance, closing: str) -> str:
     """The summary of a report."""
     missed = ("**Missed:**", Bullets(report.missed)) if report.missed else ()
     facts = Bullets(tuple(f"{fact.value} {fact.label}" for fact in report.facts))
-    aged = (Text(f"This report {standing_text(provenance.standing)}.", "bad"),) if provenance.standing else ()
+    aged = (Text(f"This report {standing_text(provenance.standing)}.", "short"),) if provenance.standing else ()
     blocks = [f"**{report.summary}**", *aged, *report.decisions, *missed, facts, *report.blocks]
     for section in report.sections:
         blocks += () if section.page_only else (f"## {section.title}", *section.blocks)
@@ -25,7 +25,7 @@ def block(item: Block) -> str:
         case str():
             return " ".join(item.split())
         case Text(text, tone):
-            return f"**{text}**" if tone == "bad" else text
+            return f"**{text}**" if tone in ("bad", "short") else text
         case Code(text):
             return f"```\n{text}\n```"
         case Table():

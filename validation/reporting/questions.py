@@ -2,7 +2,7 @@
 
 # Annotations are values here: the options of a command name its studies.
 import re
-from collections.abc import Callable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Mapping, Sequence
 from dataclasses import replace
 from typing import Annotated, Any
 
@@ -59,13 +59,18 @@ def composing(title: str, theory: str) -> Compose:
         missed = (Fact("missed", study.title, False) for study in studies.values() if not study.ok)
         sections = tuple(_section(name, study) for name, study in studies.items())
         facts = (Fact(str(len(studies)), "questions answered"), *missed)
-        short_of = ((f"[{study.title}](#{name})", _SENTENCE.split(study.answer)[0]) for name, study in studies.items())
-        answers = (Table.of("question | answer in short", short_of),) if studies else ()
+        answers = answers_in_short((name, study.title, study.answer) for name, study in studies.items())
         on = f"on {counted(len(studies), 'question')}"
         draft = Report(title, on, None, (intro,), sections, facts=facts, decisions=answers)
         return judged(draft, data, {name: study.findings for name, study in studies.items()}, "study", "number")
 
     return compose
+
+
+def answers_in_short(asked: Iterable[tuple[str, str, str]]) -> tuple[Table, ...]:
+    """Of anchor, question and answer, a table of each question with the first sentence of its answer."""
+    rows = [(f"[{question}](#{anchor})", _SENTENCE.split(answer)[0]) for anchor, question, answer in asked]
+    return (Table.of("question | answer in short", rows),) if rows else ()
 
 
 def _section(name: str, study: Study) -> Section:

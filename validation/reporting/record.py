@@ -27,10 +27,10 @@ def verdict(text: object, ok: bool | None) -> str:
 
 @dataclass(frozen=True)
 class Text:
-    """A paragraph that is not plain: a remark, a warning, advice."""
+    """A paragraph that is not plain: a remark, a warning, a doubt that is no fault, advice."""
 
     text: str
-    tone: Literal["plain", "soft", "bad", "advice"] = "plain"
+    tone: Literal["plain", "soft", "bad", "short", "advice"] = "plain"
 
 
 @dataclass(frozen=True)

@@ -12,7 +12,7 @@ from ..reporting.figures import Figure
 from ..reporting.findings import Finding
 from ..reporting.numbers import counted, short
 from ..reporting.plain import restored
-from ..reporting.questions import findings_fold, judged
+from ..reporting.questions import answers_in_short, findings_fold, judged
 from ..reporting.record import Bullets, Data, Fact, Report, Section, Text, Topic
 from . import heatmap
 from .catalogue import STUDIES
@@ -52,6 +52,7 @@ def compose(data: Data) -> Report:
         (INTRO,),
         tuple(_section(name, study, findings[name], data["quick"]) for name, study in studies.items()),
         facts=(Fact(str(len(studies)), "studies"), Fact(str(runs), "runs")),
+        decisions=answers_in_short((name, STUDIES[name].question, study["verdict"]) for name, study in studies.items()),
     )
     return judged(draft, data, findings, "study", "claim")
 

@@ -73,7 +73,7 @@ def test_a_broken_report_is_marked_and_spares_the_others(tmp_path: Path, text: s
     [
         ({"versions": {"numpy": "1.0"}}, "was made with numpy 1.0, now 2.0"),
         ({"digest": "another"}, "is older than the code it judges"),
-        ({"digest": ""}, "was made before digests were kept"),
+        ({"digest": ""}, "was made before reports stated which code they judge"),
         ({"digests": [DIGEST, "another"]}, "is older than the code it judges"),
         ({"digest": evidence.MIXED}, "was made while the code changed"),
         ({"date": ""}, "does not say when it was made"),

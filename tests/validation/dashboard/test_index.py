@@ -12,6 +12,7 @@ from validation.__main__ import app
 from validation.dashboard.catalogue import TOPICS
 from validation.dashboard.gather import gather
 from validation.dashboard.index import BEGIN, END, QUOTED, QuoteError, brief, quote, write_index
+from validation.reporting import evidence
 from validation.reporting.html import prose
 
 ROOT = Path(__file__).parents[3]
@@ -74,7 +75,7 @@ def test_the_dashboard_collects_existing_reports(tmp_path: Path) -> None:
 
 @pytest.mark.parametrize(
     ("stated", "says"),
-    [(DIGEST, ""), ("another", "older than the code it judges"), ("", "made before digests were kept")],
+    [(DIGEST, ""), ("another", evidence.OLDER), ("", evidence.UNKNOWN)],
 )
 def test_reports_older_than_the_code_are_marked_everywhere(tmp_path: Path, stated: str, says: str) -> None:
     entries = gather(write(tmp_path, FUZZ | {"digest": stated}), {"numpy": "2.0"}, digest)
@@ -82,7 +83,7 @@ def test_reports_older_than_the_code_are_marked_everywhere(tmp_path: Path, state
     summary = (tmp_path / "summary.md").read_text(encoding="utf-8")
     assert (f"| 2026-11-20 10:00{'; ' * bool(says)}{says} |" in summary) and (f"; 1 {says}." in summary) == bool(says)
     assert all((text in page) == bool(says) for text in (f"1 {says}.", f"fuzz: good, {says}<")) or not says
-    assert says or not any(text in summary + page for text in ("older than", "before digests"))
+    assert says or not any(text in summary + page for text in ("older than", "before reports stated"))
 
 
 def test_pages_are_rendered_from_stored_measurements(tmp_path: Path) -> None:

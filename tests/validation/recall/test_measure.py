@@ -84,7 +84,7 @@ def test_an_update_keeps_the_rows_of_other_faults(report: Path) -> None:
     rows = {row["name"]: row for row in after["faults"]}
     assert rows.keys() == before.keys() == {NAME, OTHER} and "origin" not in rows[NAME]
     assert rows[OTHER].pop("origin").keys() == {"revision", "date"} and rows[OTHER] == before[OTHER]
-    assert "Of the 2 faults, these were asked earlier: 1 on " in (report / "recall.md").read_text(encoding="utf-8")
+    assert "When the 2 faults were asked, where earlier" in (report / "recall.md").read_text(encoding="utf-8")
     after = named(report, OTHER, "--update", "--suite", SUITE % "colours")
     assert [row["name"] for row in after["faults"] if "origin" in row] == [NAME]
 

@@ -38,7 +38,7 @@ def compose(data: Data) -> Report:
         None,
         (_LIMITS,),
         (
-            Section("From where", (Table.of(" | ".join(["from", *(f"{task} [us]" for task in tasks)]), costs),)),
+            Section("From where", (Table.of(" | ".join(["from", *(f"{task} [µs]" for task in tasks)]), costs),)),
             Section(
                 f"Worst case of {calls} calls in C",
                 (
