@@ -10,7 +10,7 @@ import pytest
 
 from tests.late import needs_extra
 from validation.engines.functions.devices import FIELDS
-from validation.engines.interface import DOUBLE, State, Tree
+from validation.engines.interface import DOUBLE, SINGLE, State, Tree
 from validation.engines.models.covering import CHAIN, OPTIONS, scenes, trees
 from validation.engines.plugins.mujoco import covered
 from validation.engines.plugins.writing.source import Source, SourceModel
@@ -21,6 +21,13 @@ _ITSELF = "def stepped(m, given):\n    d = in_c(given)\n    return lambda name: 
 _WRONG = """def stepped(m, given):
     d = in_c(given)
     if m.opt.disableflags & mj.mjtDisableBit.mjDSBL_SPRING: d.qfrc_passive[:] -= d.qfrc_damper
+    return lambda name: getattr(d, name)"""
+
+# Forces of constraints as the rest of all others, in single precision.
+_REST = """def stepped(m, given):
+    d = in_c(given)
+    forces = np.concatenate([d.qfrc_constraint + d.qfrc_smooth, d.qfrc_smooth]).astype(np.float32)
+    d.qfrc_constraint[:] = forces[:m.nv] * np.float32(1.0 + 2.0**-22) - forces[m.nv:]
     return lambda name: getattr(d, name)"""
 
 
@@ -44,9 +51,9 @@ def test_each_pair_of_features_is_in_some_scene() -> None:
     assert missing == {frozenset(("unconstrained", one)) for one in CHAIN["bound"] if one != "unbound"}
 
 
-def _excess(tree: Tree, function: str, lines: str) -> float:
+def _excess(tree: Tree, function: str, lines: str, roundoff: float = DOUBLE) -> float:
     """How far a field of an engine, made by lines, is beyond what roundings explain."""
-    source = covered.write(tree, "mujoco", DOUBLE, lines)
+    source = covered.write(tree, "mujoco", roundoff, lines)
     assert isinstance(source, Source)
     numbers = np.random.default_rng(3).uniform(-1.0, 1.0, 7)
     state = State(numbers, *(numbers[k : k + 6] for k in (0, 1)), numbers[:6][::-1].copy(), numbers[:6], numbers)
@@ -61,6 +68,15 @@ def test_mujoco_agrees_with_itself() -> None:
     made = list(trees().values())[::4]
     assert [tree.name for tree in made if _excess(tree, "scene_qvel", _ITSELF) != 0.0] == []
     assert {_excess(made[0], name, _ITSELF) for name in FIELDS} == {0.0}
+
+
+def test_forces_of_constraints_are_known_to_the_roundings_of_others() -> None:
+    """Without constraints, too, where they are zero; what is more than roundings is found."""
+    pytest.importorskip("mujoco", reason=needs_extra("engine-mjx", "mujoco"))
+    made = [tree for tree in trees().values() if "unconstrained" in tree.features][:4]
+    assert {_excess(tree, "scene_qfrc_constraint", _REST, SINGLE) for tree in made} == {0.0}
+    wrong = _REST.replace("2.0**-22", "2.0**-8")
+    assert all(_excess(tree, "scene_qfrc_constraint", wrong, SINGLE) > 0.0 for tree in made)
 
 
 def test_a_fault_of_two_features_is_found_and_made_small() -> None:
