@@ -43,14 +43,14 @@ def launcher(symbol: str, types: tuple[str, ...]) -> str:
     )
 
 
-def on_host(code: DeviceCode, folder: Path, sources: str = "") -> Path:
+def on_host(code: DeviceCode, folder: Path) -> Path:
     """A library of the kernels, each with a launcher."""
     launchers = [
         launcher(k.symbol, (_STRIDED,) * (len(k.signature.inputs) + len(k.signature.outputs))) for k in code.kernels
     ]
     launchers += [launcher(symbol, _ROLLOUT) for symbol in code.rollouts.values()]
     source = folder / f"{code.precision}.cu"
-    source.write_text("\n".join([f'#include "{SHIM}"', PLAIN, code.text, *launchers, sources]))
+    source.write_text("\n".join([f'#include "{SHIM}"', PLAIN, code.text, *launchers]))
     library = source.with_suffix(".so")
     needs_program("g++")
     subprocess.run(["g++", *FLAGS, source, "-o", library], check=True, env=with_utilities())

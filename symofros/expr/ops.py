@@ -48,7 +48,7 @@ class Op:
     is_function: bool = True
 
 
-def _libm(function: Callable[..., float], overflow: float = math.inf) -> Callable[..., Any]:
+def _libm(function: Callable[..., float]) -> Callable[..., Any]:
     """Apply a C library function elementwise, with IEEE results where Python would raise."""
 
     def scalar(*x: float) -> float:
@@ -57,7 +57,7 @@ def _libm(function: Callable[..., float], overflow: float = math.inf) -> Callabl
         except ValueError:  # Outside the domain.
             return math.nan
         except OverflowError:
-            return overflow
+            return math.inf
 
     def rule(*x: Any) -> Any:
         if all(isinstance(operand, float) for operand in x):

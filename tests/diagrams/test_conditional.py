@@ -37,12 +37,12 @@ EVERY["from_above"] = sf.Condition(triggered="other", edge="either")
 EVERY["both"] = sf.Condition(enabled="enable", triggered="trigger", edge="either", outputs="reset", states="reset")
 
 
-def summing(period: float = STEP) -> sf.Diagram:
+def summing() -> sf.Diagram:
     """A sum of what it is given, and how often it ran; what is continuous inside is read inside."""
     part = sf.Diagram("summing")
     part.add(blocks.Gain(name="twice", gain=2.0))
-    part.add(blocks.Integrator(name="sum", start=FIRST, period=period), u="twice")
-    part.add(Counter(name="runs", period=period))
+    part.add(blocks.Integrator(name="sum", start=FIRST, period=STEP), u="twice")
+    part.add(Counter(name="runs", period=STEP))
     part.add_inlet("u", "twice.u")
     part.outlets = {"x": "sum.y", "runs": "runs"}
     return part

@@ -22,9 +22,9 @@ UNAMPLIFIED = 1e-5
 _STATES = 16
 
 
-def bendings_at(model: Model, q: Array, par: ArrayLike | None = None, t: float = math.nan) -> tuple[BeamBending, ...]:
+def bendings_at(model: Model, q: Array, par: ArrayLike | None = None) -> tuple[BeamBending, ...]:
     """Bending of each beam in a configuration q (nq)."""
-    return tuple(beam.bending(q[beam.in_q], t) for beam in model.beams(par))
+    return tuple(beam.bending(q[beam.in_q], math.nan) for beam in model.beams(par))
 
 
 def bendings_in_motion(

@@ -20,14 +20,14 @@ from tests.models import sampled
 PERIOD = 0.01
 
 
-def run_both(diagram: Diagram, t_end: float, dt: float = PERIOD, agree: float = 1e-9) -> Any:
+def run_both(diagram: Diagram, t_end: float) -> Any:
     """The compiled run, once the interpreted one agrees on the block "ik"."""
     simulation = sf.Simulation(diagram)
-    found = simulation.run(t_end, dt=dt, record=PERIOD)
+    found = simulation.run(t_end, dt=PERIOD, record=PERIOD)
     assert found.outcome.ok
-    other = simulation.interpret(t_end, dt=dt, record=PERIOD)
+    other = simulation.interpret(t_end, dt=PERIOD, record=PERIOD)
     for port in ("q", "v", "a", "error"):
-        np.testing.assert_allclose(other[f"ik.{port}"], found[f"ik.{port}"], rtol=agree, atol=agree)
+        np.testing.assert_allclose(other[f"ik.{port}"], found[f"ik.{port}"], rtol=1e-9, atol=1e-9)
     return found
 
 

@@ -127,13 +127,13 @@ def test_rounded_numbers_become_exact_unless_disabled(tmp_path: Path) -> None:
 # Meshes.
 
 TETRAHEDRON = "\n".join(["v 0 0 0", "v 1 0 0", "v 0 1 0", "v 0 0 1", "f 1 3 2", "f 1 2 4", "f 1 4 3", "f 2 3 4"])
-MESH_BODY = '<body name="a"><joint name="q"/>{inertial}<geom type="mesh" mesh="part" {extra}/></body>'
+MESH_BODY = '<body name="a"><joint name="q"/><geom type="mesh" mesh="part" {extra}/></body>'
 INERTIAL = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
 
 
-def with_mesh(inertial: str = "", extra: str = "", file: str = "part.obj", compiler: str = "") -> str:
+def with_mesh(extra: str = "", file: str = "part.obj", compiler: str = "") -> str:
     asset = f'<compiler {compiler}/><asset><mesh name="part" file="{file}"/></asset>'
-    return asset + world(MESH_BODY.format(inertial=inertial, extra=extra))
+    return asset + world(MESH_BODY.format(extra=extra))
 
 
 def test_a_mesh_gives_a_body_its_inertia(tmp_path: Path) -> None:

@@ -19,11 +19,11 @@ NOISES = (0.0, 1e-16, 1e-12, 1e-9, 1e-7, 1e-6)
 NAMES = [name for name in HOSTILE if name == name.strip()]
 
 
-def stated_tree(seed: int, n: int = 5, kinds: Sequence[str] = SERIES, named: bool = True) -> sf.System:
+def stated_tree(seed: int, kinds: Sequence[str] = SERIES) -> sf.System:
     """A tree whose joints have all that a joint may have, some of its bodies without mass; equal seeds, equal trees."""
     rng = np.random.default_rng(seed)
-    tree = random_tree(seed, n, kinds, noisy=True)
-    names = [str(name) for name in rng.permutation(NAMES)] if named else [f"n{i}" for i in range(40)]
+    tree = random_tree(seed, 5, kinds, noisy=True)
+    names = [str(name) for name in rng.permutation(NAMES)]
     called = {body.name: names.pop() for body in tree.bodies}
     parents = [body.joint.parent for body in tree.bodies if body.joint is not None]
     bodies = []

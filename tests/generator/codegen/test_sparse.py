@@ -24,9 +24,9 @@ from tests.exports.cases import need
 FORWARD = ("forward_dynamics", "project")
 
 
-def system_of(system: sf.System, function: str = "forward_dynamics") -> SparseSystem:
+def system_of(system: sf.System) -> SparseSystem:
     stated = Compilation(system, sf.Options(functions=FORWARD))
-    return sparse_systems(stated.program)[0][function]
+    return sparse_systems(stated.program)[0]["forward_dynamics"]
 
 
 @st.composite

@@ -93,11 +93,11 @@ def answered(answer: Any) -> dict[str, Any]:
     return {"fate": "answered", "answer": answer, "seconds": 1.0}
 
 
-def a_study(folder: Path, count: int, overlay: Any = None) -> Study:
+def a_study(folder: Path, count: int) -> Study:
     """A study of so many faults, none of which is judged yet."""
     (folder / "m.py").write_text("a\n")
     faults = tuple(SourceFault("m.py", line, SIGN, 0, "a", "b") for line in range(count))
-    return Study(faults, Store(folder / "answers.jsonl", folder), overlay, folder, lambda _: None)
+    return Study(faults, Store(folder / "answers.jsonl", folder), None, folder, lambda _: None)
 
 
 def test_scores_count_faults_that_change_a_result(tmp_path: Path) -> None:

@@ -22,7 +22,7 @@ ORDERS = ("all", "first_order")
 SMALL, MODERATE = 0.10, 0.21
 
 
-def strip_model(retain: str, functions: int = 3) -> sf.Model:
+def strip_model(retain: str) -> sf.Model:
     """Our strip, on edge along y, under a load on its tip with components "Fy" and "Fz" that keep their directions."""
     strip = Strip()
     load = sf.BeamLoad((0.0, sf.formula("Fy", "load"), sf.formula("Fz", "load")), at=1.0, axes="world")
@@ -35,9 +35,9 @@ def strip_model(retain: str, functions: int = 3) -> sf.Model:
         EI_y=strip.EI_y,
         GJ=strip.GJ,
         rhoJ=1e-6,
-        bend_y=functions,
-        bend_z=functions,
-        twist=functions,
+        bend_y=3,
+        bend_z=3,
+        twist=3,
         family="legendre",
         loads=(load,),
         retain=retain,  # type: ignore[arg-type]

@@ -42,18 +42,15 @@ def _pendulum() -> sf.Model:
     return sf.compile(sf.System("pendulum", (sf.RigidBody("bob", hinge, sf.Inertia(1.0, (0, 0, -1.0))),)), TAPE)
 
 
-def _notes_cell(
-    name: str, run: sf.Trajectory, *expected: tuple[str, tuple[float, ...]], kind: str = "finished"
-) -> Cell:
+def _notes_cell(name: str, run: sf.Trajectory, *expected: tuple[str, tuple[float, ...]]) -> Cell:
     """The cell of a run: each expected note is there with its numbers, and no other.
 
     Args:
         name: What was run.
         run: The run.
         expected: Patterns of its notes, a group a number; with the numbers.
-        kind: How it ends.
     """
-    notes, worst = list(run.outcome.notes), float(run.outcome.kind != kind)
+    notes, worst = list(run.outcome.notes), float(run.outcome.kind != "finished")
     for pattern, numbers in expected:
         found = next((match for note in notes if (match := re.search(pattern, note))), None)
         if found is None:

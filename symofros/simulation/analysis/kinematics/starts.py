@@ -87,23 +87,22 @@ def closed_start(
     return ClosedStart(on, moving, changes(model.record.name, names, stated, (q, v), (on, moving)))
 
 
-def singular_start(model: Model, q: Array, u: ArrayLike | None = None) -> tuple[str, ...]:
+def singular_start(model: Model, q: Array) -> tuple[str, ...]:
     """A note where the constraints have less rank at a first posture than beside it; none where they have not.
 
     Args:
         model: Model; one without constraints has no singular posture.
         q: Configuration (nq) on the constraints.
-        u: Inputs, for prescribed motions.
     """
     if not model.nc or not model.nv:
         return ()
-    strengths = np.linalg.svd(model.constraint_jacobian(q, u=u))
+    strengths = np.linalg.svd(model.constraint_jacobian(q))
     weak = strengths.Vh[np.append(strengths.S, np.zeros(model.nv - len(strengths.S))) <= WEAK * strengths.S[0]]
     ranks = [_rank(strengths.S)]
     for way in (*weak, *-weak):  # What the constraints leave free here, and more of it beside a singular posture.
         with suppress(AssemblyError):
-            beside = assemble(model, model.integrate(q, _BESIDE * way), u=u).q
-            ranks.append(_rank(np.linalg.svd(model.constraint_jacobian(beside, u=u)).S))
+            beside = assemble(model, model.integrate(q, _BESIDE * way)).q
+            ranks.append(_rank(np.linalg.svd(model.constraint_jacobian(beside)).S))
     if max(ranks) == ranks[0]:
         return ()
     return (

@@ -81,16 +81,16 @@ def test_contacts_that_steps_skip_are_reported_and_resolved_ones_are_not(
     assert np.abs(coarse.v - fine.v).max() > 0.3 * np.abs(fine.v).max()
 
 
-def sampled_loop(law: str, damping: float = 2.0) -> sf.Simulation:
-    """A mass of 1 kg that a sampled law holds with 100 N/m and a damping [N s/m], too late to hold it still."""
+def sampled_loop(law: str) -> sf.Simulation:
+    """A mass of 1 kg that a sampled law holds with 100 N/m and 2 N s/m, too late to hold it still."""
     diagram = moving(oscillator_system(k=1.0), start={"x": 1.0}, u="law.force")
     given = {"x": "plant.q", "v": "plant.v"}
     if law == "formula":
-        diagram.add(Formula(name="law", formulas={"force": [f"-100*x[0] - {damping}*v[0]"]}, period=0.1), **given)
+        diagram.add(Formula(name="law", formulas={"force": ["-100*x[0] - 2*v[0]"]}, period=0.1), **given)
     else:
 
         def held(t: float, inputs: Mapping[str, np.ndarray]) -> dict[str, np.ndarray]:
-            return {"force": -100.0 * inputs["x"] - damping * inputs["v"]}
+            return {"force": -100.0 * inputs["x"] - 2.0 * inputs["v"]}
 
         ports = {"x": (1,), "v": (1,)}
         diagram.add(PythonBlock(name="law", function=held, inputs=ports, outputs={"force": (1,)}, period=0.1), **given)

@@ -21,11 +21,11 @@ from symofros.studio.viewer.viewer import Viewer
 from tests.studio.viewer.replays.unpacking import messages_of
 
 
-def run_of(*names: str, system: str = "double_pendulum") -> DiagramRun:
+def run_of(*names: str) -> DiagramRun:
     """Arms that fall, one a name, from different angles."""
     d = sf.Diagram("arms")
     for i, name in enumerate(names):
-        d.add_model(f"{name}_model", MODELS[system], {"q1": 0.5 + i}, {"L1": 0.6 + i})
+        d.add_model(f"{name}_model", MODELS["double_pendulum"], {"q1": 0.5 + i}, {"L1": 0.6 + i})
         d.add(blocks.ForwardDynamics(name=name, model=f"{name}_model"))
     return sf.Simulation(d).run(0.1, dt=1e-2)
 

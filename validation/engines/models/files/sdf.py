@@ -64,10 +64,10 @@ _A = _link("a", _AT_A, _IA)
 _JA = _joint("a", "world", _AXIS_A)
 
 
-def _in_model(p: Vector, R: Rows = IDENTITY) -> str:
+def _in_model(p: Vector) -> str:
     """The pose in the model's frame of what is placed so in the first link's."""
     world = np.array(TURNED) @ np.array(p) + np.array(BODY.joints[0].p)
-    return f"{numbers(vector(world))} {numbers(rpy(rows(np.array(TURNED) @ np.array(R))))}"
+    return f"{numbers(vector(world))} {numbers(rpy(TURNED))}"
 
 
 _AT_B = _in_model((0.0, 0.0, 0.5))
