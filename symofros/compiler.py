@@ -33,7 +33,7 @@ from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.tape import machine_text
 from symofros.generator.held_beams import held_beams, may_be_held
-from symofros.generator.instants import has_instants, instants_at
+from symofros.generator.instants import MechanismInstants, has_instants
 from symofros.generator.passes.count import Operations, count_program
 from symofros.generator.programs import ProgramBuilder, requested
 from symofros.generator.record import GENERATOR as GENERATOR
@@ -274,7 +274,7 @@ class Compilation:
             parameter_check=self._parameter_check.problems,
             origin=partial(_compile_carried, self.system, self._stated),
             device_code=units.device_code,
-            instants=instants_at(self.tree),
+            instants=MechanismInstants(self.tree),
             routes=units.routes if tell else None,
             background=background,
         )

@@ -92,3 +92,13 @@ def share_memory(a: npt.NDArray[Any], b: npt.NDArray[Any]) -> bool:
         return bool(np.shares_memory(a, b, max_work=_OVERLAP_WORK))  # type: ignore[arg-type]
     except np.exceptions.TooHardError:
         return True
+
+
+# Instants that differ by less, relative to themselves, are one, and zero is one with less than that [s]; as in
+# native/stepping/state/system.c.
+_SAME_INSTANT, _SAME_AS_ZERO = 2e-15, 1e-300
+
+
+def rounding_of(t: Array | float) -> Array:
+    """Largest distance [s] at which instants count as equal to t."""
+    return np.asarray(_SAME_INSTANT * np.abs(t) + _SAME_AS_ZERO)

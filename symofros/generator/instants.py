@@ -20,7 +20,7 @@ from symofros.mechanics.topology.formulas import stated_values, timed_values
 from symofros.mechanics.topology.tree import SpanningTree
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import Rate
-from symofros.runtime.instants import Instants, Motion
+from symofros.runtime.instants import Motion
 
 # Spans whose instants are kept, and formulas.
 _KEPT = 64
@@ -32,33 +32,62 @@ def has_instants(tree: SpanningTree) -> bool:
     return bool(instant_operands(lowering.g, [lowering.value(value) for value in timed_values(tree.system)]))
 
 
-def instants_at(tree: SpanningTree) -> Instants:
-    """The instants of a mechanism's formulas of time in a run, or of all along its motion: as of `Instants`."""
-    own = timed_values(tree.system)
-    slots = {**tree.coordinates.symbols, **tree.coordinates.keys}
-    known, moving = {*slots, *tree.coordinates.constants}, {name for name, slot in slots.items() if slot.group != "par"}
+class MechanismInstants:
+    """The instants of a mechanism's formulas of time in a run, or of all along its motion: as of `Instants`.
 
-    @lru_cache(maxsize=_KEPT)
-    def search(values: tuple[Value, ...], of_states: bool) -> FormulaInstants:
-        lowering = Lowering(Graph(), tree.coordinates)
-        edges = [lowering.value(value) for value in values]
-        return FormulaInstants(Program(tree.system.name, lowering.g, {}, ()), edges, of_states)
+    Args:
+        tree: The mechanism.
+    """
 
-    @lru_cache(maxsize=_KEPT)
-    def instants(values: tuple[Value, ...], par: tuple[float, ...], t0: float, t_end: float) -> Array:
-        return search(values, False)(np.array(par), t0, t_end)
+    def __init__(self, tree: SpanningTree) -> None:
+        self._tree, self._own = tree, tuple(timed_values(tree.system))
+        self._search, self._found = lru_cache(maxsize=_KEPT)(self._search_of), lru_cache(maxsize=_KEPT)(self._find)
+        self._all_own = cache(self._own_of_states)
 
-    @cache
-    def all_own() -> tuple[Value, ...]:
-        values = (stated.value for stated in stated_values(tree.system))
-        return tuple(value for value in values if symbols(value) & moving and symbols(value) <= known)
-
-    def of_run(formulas: Sequence[Any], par: Array, t0: float, t_end: float, motion: Motion | None = None) -> Array:
-        given = [item.formula if isinstance(item, Rate) else item for item in formulas]
-        stated = stated_formulas(tree, given)
+    def __call__(
+        self,
+        formulas: Sequence[Any],
+        par: Array,
+        t0: float,
+        t_end: float,
+        motion: Motion | None = None,
+        *,
+        kinks: bool = False,
+    ) -> Array:
+        """As `Instants`."""
         if motion is not None:
-            return search((*all_own(), *stated), True)(par, t0, t_end, motion)
-        values = (*own, *(value for value in stated if TIME in symbols(value)))
-        return instants(values, tuple(par.tolist()), t0, t_end) if values else np.zeros(0)
+            return self._search((*self._all_own(), *self._stated(formulas)), True)(par, t0, t_end, motion)
+        values, counts = self._timed(formulas), self.parameters(formulas)
+        if counts is None:
+            return np.zeros(0)
+        counted = np.zeros_like(par)
+        counted[list(counts)] = par[list(counts)]  # Of sets that differ in others alone the instants are known.
+        return self._found(values, tuple(counted.tolist()), t0, t_end, kinks)
 
-    return of_run
+    def parameters(self, formulas: Sequence[Any]) -> tuple[int, ...] | None:
+        """As `Instants`."""
+        values = self._timed(formulas)
+        return self._search(values, False).parameters if values else None
+
+    def _stated(self, formulas: Sequence[Any]) -> tuple[Value, ...]:
+        given = [item.formula if isinstance(item, Rate) else item for item in formulas]
+        return tuple(stated_formulas(self._tree, given))
+
+    def _timed(self, formulas: Sequence[Any]) -> tuple[Value, ...]:
+        return (*self._own, *(value for value in self._stated(formulas) if TIME in symbols(value)))
+
+    def _search_of(self, values: tuple[Value, ...], of_states: bool) -> FormulaInstants:
+        lowering = Lowering(Graph(), self._tree.coordinates)
+        edges = [lowering.value(value) for value in values]
+        return FormulaInstants(Program(self._tree.system.name, lowering.g, {}, ()), edges, of_states)
+
+    def _find(self, values: tuple[Value, ...], par: tuple[float, ...], t0: float, t_end: float, kinks: bool) -> Array:
+        return self._search(values, False)(np.array(par), t0, t_end, kinks=kinks)
+
+    def _own_of_states(self) -> tuple[Value, ...]:
+        """The mechanism's own formulas, of the state too."""
+        coordinates = self._tree.coordinates
+        slots = {**coordinates.symbols, **coordinates.keys}
+        known, moving = {*slots, *coordinates.constants}, {name for name, slot in slots.items() if slot.group != "par"}
+        values = (stated.value for stated in stated_values(self._tree.system))
+        return tuple(value for value in values if symbols(value) & moving and symbols(value) <= known)

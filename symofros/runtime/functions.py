@@ -25,7 +25,7 @@ from symofros.runtime.calls.layout import by_columns, flat, states
 from symofros.runtime.calls.library import CompiledKernel
 from symofros.runtime.calls.plain import PlainCall, PlainCalls, plain_call
 from symofros.runtime.cuda.device_code import DeviceCode
-from symofros.runtime.instants import Instants, Motion
+from symofros.runtime.instants import NO_INSTANTS, Instants
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.record import ModelRecord
 
@@ -97,7 +97,7 @@ class Functions(Arguments):
         self._origin = origin
         self._device_code = device_code
         self._beams_at = beams
-        self._instants_of = instants
+        self.formula_instants = NO_INSTANTS if instants is None else instants
         self._routes_of = routes
         self._background = background
         self._kernels: dict[Key, Kernel] = {key: kernel for unit in units for key, kernel in unit.kernels.items()}
@@ -156,7 +156,7 @@ class Functions(Arguments):
             self._parameter_check,
             self._origin,
             self._device_code,
-            self._instants_of,
+            self.formula_instants,
             self._routes_of,
             self._background,
         )
@@ -168,23 +168,6 @@ class Functions(Arguments):
         if self._beams_at is None:
             return ()
         return self._beams_at(self._par if par is None else self._array("par", par, self.npar))
-
-    def formula_instants(
-        self, formulas: Sequence[Any], par: Array, t0: float, t_end: float, motion: Motion | None = None
-    ) -> Array:
-        """Instants at which formulas of time bend, jump or change fast, the model's own and those of laws.
-
-        Args:
-            formulas: Laws, as `formulas` takes them.
-            par: Run-time parameters (npar).
-            t0: Start of a run [s].
-            t_end: End of it [s].
-            motion: States of the run by time, along which formulas of these count, too.
-
-        Returns:
-            Instants in order, between start and end (n) [s].
-        """
-        return np.zeros(0) if self._instants_of is None else self._instants_of(formulas, par, t0, t_end, motion)
 
     def kernel(self, name: str, frame: str = "") -> Kernel:
         """A function as the thing that is called, made on demand; for loops of one's own.

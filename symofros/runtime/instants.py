@@ -27,13 +27,58 @@ class Motion(NamedTuple):
 
 
 class Instants(Protocol):
-    """Instants of a mechanism's own formulas and of laws, as `Functions.formula_instants` gives them."""
+    """Instants at which formulas of time bend, jump or change fast, the model's own and those of laws."""
 
     def __call__(
-        self, formulas: Sequence[Any], par: Array, t0: float, t_end: float, motion: Motion | None = None, /
+        self,
+        formulas: Sequence[Any],
+        par: Array,
+        t0: float,
+        t_end: float,
+        motion: Motion | None = None,
+        *,
+        kinks: bool = False,
     ) -> Array:
-        """Laws, parameters (npar), start and end of a run [s], and its motion -> instants (n) [s]."""
+        """Instants of a run.
+
+        Args:
+            formulas: Laws, as `Functions.formulas` takes them.
+            par: Run-time parameters (npar).
+            t0: Start of the run [s].
+            t_end: End of it [s].
+            motion: States of the run by time, along which formulas of these count, too.
+            kinks: Whether bends and jumps alone count.
+
+        Returns:
+            Instants in order, after the start and up to the end (n) [s].
+        """
         ...
+
+    def parameters(self, formulas: Sequence[Any]) -> tuple[int, ...] | None:
+        """Indices of the parameters that instants depend on; None where there are none in any run."""
+        ...
+
+
+class _NoInstants:
+    """A model without formulas."""
+
+    def __call__(
+        self,
+        formulas: Sequence[Any],
+        par: Array,
+        t0: float,
+        t_end: float,
+        motion: Motion | None = None,
+        *,
+        kinks: bool = False,
+    ) -> Array:
+        return np.zeros(0)
+
+    def parameters(self, formulas: Sequence[Any]) -> None:
+        return None
+
+
+NO_INSTANTS = _NoInstants()
 
 
 _EVALUATE = "void(void *, int32_t, int32_t, const double *, double *)"
@@ -66,7 +111,8 @@ def _found(kinds: Sequence[int], values: Operands, t0: float, t_end: float, capa
 
     def evaluate(_: Any, operand: int, n: int, t: Any, value: Any) -> None:
         try:
-            memory.view(value, n)[:] = values(operand, memory.view(t, n))
+            buffer = memory.ffi.buffer
+            np.frombuffer(buffer(value, 8 * n))[:] = values(operand, np.frombuffer(buffer(t, 8 * n)))
         except BaseException as error:  # It may not pass through C.
             failures.append(error)
 

@@ -12,7 +12,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arguments import CheckedCalls, check_fields
-from symofros.base.arrays import Array, numeric
+from symofros.base.arrays import Array, numeric, rounding_of
 from symofros.base.names import coordinate_of
 from symofros.errors import ArgumentError, Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.model import Model, Rate
@@ -63,11 +63,6 @@ class Signal(metaclass=CheckedCalls):
         raise ShapeError(Problem("signal: not samples over time", found, rule, remedy))
 
 
-# Instants that differ by less, relative to themselves, are one, and zero is one with less than that [s]; as in
-# native/stepping/state/system.c.
-_SAME_INSTANT, _SAME_AS_ZERO = 2e-15, 1e-300
-
-
 def held_samples(times: Array, t: Array, end: Array | float = math.inf) -> Indices:
     """Numbers of the samples that count at times t where samples are held (docs/theory/simulation.md, section 1).
 
@@ -76,18 +71,13 @@ def held_samples(times: Array, t: Array, end: Array | float = math.inf) -> Indic
         t: Times (...) [s].
         end: Where the steps under way end [s]: samples that begin there, or later, do not count yet.
     """
-    bound = np.minimum(t + _rounding(t), end - np.where(np.isfinite(end), _rounding(end), 0.0))
+    bound = np.minimum(t + rounding_of(t), end - np.where(np.isfinite(end), rounding_of(end), 0.0))
     return np.maximum(np.searchsorted(times, bound, side="right") - 1, 0)
 
 
 def held_sample(times: Array, t: float, end: float = math.inf) -> int:
     """Number of the sample that counts at a time t: as `held_samples`."""
     return int(held_samples(times, np.asarray(t), end))
-
-
-def _rounding(t: Array | float) -> Array:
-    """Largest distance [s] at which instants count as equal to t."""
-    return np.asarray(_SAME_INSTANT * np.abs(t) + _SAME_AS_ZERO)
 
 
 Callback = Callable[[float, Array, Array], Any]
@@ -134,7 +124,7 @@ _STRAIGHT = 0.1
 
 def _straight_until(times: Array, values: Array, t: float, end: float) -> float:
     """The last corner of a signal's lines (n) up to which they stay near their chord from t on, or `end` [s]."""
-    first = int(np.searchsorted(times, t + _rounding(t), side="right"))
+    first = int(np.searchsorted(times, t + rounding_of(t), side="right"))
     after = int(np.searchsorted(times, end, side="left"))
     start, last = float(np.interp(t, times, values)), float(np.interp(end, times, values))
 

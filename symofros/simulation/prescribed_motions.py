@@ -12,7 +12,14 @@ from typing import NamedTuple
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.base.rotations import conjugate, normalized, quaternion_log, quaternion_product
+from symofros.base.rotations import (
+    conjugate,
+    normalized,
+    quaternion_exp,
+    quaternion_log,
+    quaternion_product,
+    rotate,
+)
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
@@ -35,22 +42,36 @@ class Rated(NamedTuple):
     """An input that is the rate of others.
 
     Attributes:
-        position: Indices of what it is a rate of: one number, or the four of a quaternion.
-        rate: Indices of the rate: one number, or three of an angular velocity in body axes.
+        position: Indices of what it is a rate of: one number, the four of a quaternion, or the seven of a free joint.
+        rate: Indices of the rate: one number, or three of an angular velocity or a velocity in body axes.
     """
 
     position: tuple[int, ...]
     rate: tuple[int, ...]
+
+    @property
+    def follows(self) -> bool:
+        """Whether the rate follows from a formula of the position."""
+        return len(self.position) == 1
+
+    def names(self, u_names: Sequence[str], axis: int) -> tuple[str, str]:
+        """The position and the rate of an axis by name, of a quaternion its first number."""
+        return u_names[self.position[axis if len(self.position) == 7 else 0]], u_names[self.rate[axis]]
 
     def mean(self, before: Array, after: Array, span: float) -> Array:
         """The mean rate between two values of all inputs."""
         p, q = before[list(self.position)], after[list(self.position)]
         if len(self.position) == 1:
             return np.asarray((q - p) / span, dtype=np.float64)
-        if not (np.linalg.norm(p) > 0.0 and np.linalg.norm(q) > 0.0):
+        turns = p[-4:], q[-4:]
+        if not (np.linalg.norm(turns[0]) > 0.0 and np.linalg.norm(turns[1]) > 0.0):
             return np.full(3, np.nan)  # No rotation, which the run says.
-        turned = quaternion_log(quaternion_product(conjugate(normalized(p)), normalized(q)))
-        return np.asarray(turned / span, dtype=np.float64)
+        back, ahead = conjugate(normalized(turns[0])), normalized(turns[1])
+        turned = quaternion_log(quaternion_product(back, ahead))
+        if len(self.position) == 4:
+            return np.asarray(turned / span, dtype=np.float64)
+        half = quaternion_product(conjugate(quaternion_exp(0.5 * turned)), back)  # From the world to the middle.
+        return np.asarray(rotate(half, (q[:3] - p[:3]) / span), dtype=np.float64)
 
 
 class Contradiction(NamedTuple):
@@ -62,6 +83,7 @@ class Contradiction(NamedTuple):
         t: Time [s].
         stated: The rate that is given there.
         found: The rate of the position there.
+        follows: Whether the rate follows from a formula of the position.
     """
 
     position: str
@@ -69,17 +91,24 @@ class Contradiction(NamedTuple):
     t: float
     stated: float
     found: float
+    follows: bool
 
     @property
     def problem(self) -> Problem:
         """In words."""
+        remedy = (
+            f"give '{self.position}' as a formula of t alone, whose rates follow ('0.3*t' for a speed of 0.3), or "
+            "rates that belong to it"
+            if self.follows
+            else f"give '{self.rate}' and the other speeds of this joint, in its own axes: of ball and free joints "
+            "they do not follow from positions"
+        )
         return Problem(
             f"inputs '{self.position}' and '{self.rate}' prescribe no one motion",
             f"at t = {self.t:.4g} s '{self.rate}' is {self.stated:.4g}, and '{self.position}' changes at "
             f"{self.found:.4g}",
             f"'{self.rate}' is the rate of '{self.position}', and the joint is where '{self.position}' says",
-            f"give '{self.position}' as a formula of t alone, whose rates follow ('0.3*t' for a speed of 0.3), or "
-            "rates that belong to it",
+            remedy,
         )
 
 
@@ -116,8 +145,12 @@ def rated_inputs(record: ModelRecord) -> list[Rated]:
     found = [Rated((at[name],), (at[f"d{name}"],)) for name in at if f"d{name}" in at]
     for i in record.quaternion_inputs:
         owner = names[i].rpartition(".")[0]
-        spin = tuple(at[name] for x in "xyz" if (name := f"{owner}.w{x}") in at)
-        found += [Rated(tuple(range(i, i + 4)), spin)] if len(spin) == 3 else []
+        turn = tuple(range(i, i + 4))
+        place, velocity, spin = (
+            tuple(at[name] for x in "xyz" if (name := f"{owner}.{kind}{x}") in at) for kind in ("p", "v", "w")
+        )
+        found += [Rated(turn, spin)] if len(spin) == 3 else []
+        found += [Rated((*place, *turn), velocity)] if len(place) == len(velocity) == 3 else []
     return found
 
 
@@ -169,7 +202,7 @@ def recorded_notes(record: ModelRecord, t: Array, u: Array) -> tuple[str, ...]:
         scale = _largest(means, stated)
         # Records may be far apart: only what differs nearly everywhere is no chord's fault.
         if len(means) and np.median(np.abs(means - stated).max(axis=1)) > OF_SAMPLES * scale > 0.0:
-            position, rate = record.u_names[rated.position[0]], record.u_names[rated.rate[0]]
+            position, rate = rated.names(record.u_names, int(np.argmax(np.abs(means - stated).max(axis=0))))
             return (
                 f"inputs '{position}' and '{rate}' prescribe no one motion: '{rate}' is not the rate of '{position}'",
             )
@@ -249,10 +282,8 @@ def _compared(
     if not differ.max(initial=0.0) > tolerance * scale:
         return None
     k, axis = (int(i) for i in np.unravel_index(int(np.argmax(differ)), differ.shape))
-    names = model.names.u
-    return Contradiction(
-        names[rated.position[0]], names[rated.rate[axis]], middles[k], float(stated[k, axis]), float(means[k, axis])
-    )
+    found = float(stated[k, axis]), float(means[k, axis])
+    return Contradiction(*rated.names(model.names.u, axis), middles[k], *found, rated.follows)
 
 
 def _largest(means: Array, stated: Array) -> float:

@@ -189,9 +189,7 @@ class Settings:
         run.realtime_scale = 1.0 / self.realtime if self.realtime else 0.0
         stepper.set_gains(self.gains)
         if math.isfinite(self.t_end):  # Steps by hand have no end, and are looked ahead of as they are made.
-            stepper.set_event_instants(self.t0, self.t_end)
-            if self.adaptive:
-                stepper.set_stops(self.t0, self.t_end)
+            stepper.look_ahead(self.t0, self.t_end)
         if self.adaptive:
             run.look_every = (self.t_end - self.t0) / LOOKS
 

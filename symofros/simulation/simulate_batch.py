@@ -190,9 +190,9 @@ def _contradiction(
         if sampled.isdisjoint((*rated.position, *rated.rate)):  # What stays has no rate.
             stated = initial.inputs.constant[:, list(rated.rate)]
             if np.nanmax(np.abs(stated), initial=0.0) > 0.0:
-                names, (k, axis) = model.names.u, np.unravel_index(int(np.nanargmax(np.abs(stated))), stated.shape)
-                position, rate = names[rated.position[0]], names[rated.rate[axis]]
-                return Contradiction(position, rate, settings.t0, float(stated[k, axis]), 0.0)
+                k, axis = (int(i) for i in np.unravel_index(int(np.nanargmax(np.abs(stated))), stated.shape))
+                named = rated.names(model.names.u, axis)
+                return Contradiction(*named, settings.t0, float(stated[k, axis]), 0.0, rated.follows)
     return contradiction(model, plan, lambda at: stepper.single.inputs_at(at, q, v), (settings.t0, settings.t_end))
 
 

@@ -5,7 +5,7 @@ from __future__ import annotations
 import hashlib
 from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, field, replace
-from functools import cache, cached_property, partial
+from functools import cached_property, partial
 from typing import Any
 
 import numpy as np
@@ -255,6 +255,32 @@ def reads_accelerations(program: Program) -> bool:
     return reads(program.graph, edges, ("a", "lam"), program.pre)
 
 
+class _Instants:
+    """Instants at which formulas of time in a part's motion bend, jump or change fast: as of `Instants`."""
+
+    def __init__(self, motion: Program) -> None:
+        self._motion = motion
+
+    def __call__(
+        self,
+        formulas: Sequence[object],
+        par: Array,
+        t0: float,
+        t_end: float,
+        motion: object = None,
+        *,
+        kinks: bool = False,
+    ) -> Array:
+        return self._search(par, t0, t_end, kinks=kinks)
+
+    def parameters(self, formulas: Sequence[object]) -> tuple[int, ...] | None:
+        return self._search.parameters
+
+    @cached_property
+    def _search(self) -> FormulaInstants:
+        return FormulaInstants(self._motion, [edge for function in self._motion.functions for edge in function.edges()])
+
+
 def _model(
     resolved: Resolved, write: Fuser, part: Part, toolchain: Toolchain | None, options: Options
 ) -> tuple[Model, Actions | None, str]:
@@ -267,18 +293,10 @@ def _model(
         """The part's unit, which has the formulas whose zeros the stepper locates."""
         return unit
 
-    def instants(_: Sequence[object], par: Array, t0: float, t_end: float, motion_of_run: object = None) -> Array:
-        """Instants at which formulas of time in the part's motion bend, jump or change fast (n) [s]."""
-        return search()(par, t0, t_end)
-
-    @cache
-    def search() -> FormulaInstants:
-        return FormulaInstants(motion, [edge for function in motion.functions for edge in function.edges()])
-
     beams, switching = partial(part_beams, resolved, part), resolved.switching(part)
     check = None if switching is None else partial(_problems, resolved, part)
     par = np.array(record.par_default)
-    model = Model(record, None, (unit,), par, formulas, beams, parameter_check=check, instants=instants)
+    model = Model(record, None, (unit,), par, formulas, beams, parameter_check=check, instants=_Instants(motion))
     kernel = unit.kernels.get(("actions", ""))
     return model, None if switching is None or kernel is None else Actions(record, switching.stated, kernel), text
 

@@ -6,10 +6,11 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
+from symofros.base.arrays import rounding_of
 from symofros.base.measures import Measures
 from symofros.expr.edges import Edge
 from symofros.expr.instants import InstantKind, Operand, instant_operands
-from symofros.expr.numerics.evaluate import Evaluation, FunctionEvaluation, evaluate_edges
+from symofros.expr.numerics.evaluate import Evaluation, FunctionEvaluation, evaluate_edges, needed_nodes
 from symofros.expr.program import Function, Program, Solver
 from symofros.runtime.calls.kernel import DEFAULT_OPTIONS, Array, BatchOptions, Kernel, Numbers, Signature
 from symofros.runtime.constrained import constrained, motion, project, solve
@@ -28,13 +29,23 @@ class FormulaInstants:
         program: Program whose graph holds the formulas.
         edges: Their edges.
         of_states: Whether they are looked at along motions, where those of states count, too.
+
+    Attributes:
+        parameters: Indices of the parameters that the instants depend on; None where there are none in any run.
     """
 
     def __init__(self, program: Program, edges: Sequence[Edge], of_states: bool = False) -> None:
         self._operands = instant_operands(program.graph, edges, of_states=of_states)
         self._evaluations = [Evaluation(program, [operand.edge], {}) for operand in self._operands]
+        graph, edges = program.graph, [operand.edge for operand in self._operands]
+        leaves = {abs(arg) for node in needed_nodes(graph, edges) for arg in graph.args[node]}.union(map(abs, edges))
+        slots = [graph.slot[leaf] for leaf in leaves if leaf in graph.slot]
+        counted = tuple(sorted({slot.index for slot in slots if slot.group == "par"}))
+        self.parameters = counted if edges else None
 
-    def __call__(self, par: Array, t0: float, t_end: float, motion: Motion | None = None) -> Array:
+    def __call__(
+        self, par: Array, t0: float, t_end: float, motion: Motion | None = None, *, kinks: bool = False
+    ) -> Array:
         """Instants within a span at which formulas of time, or along a motion, bend, jump or change fast.
 
         Args:
@@ -42,21 +53,31 @@ class FormulaInstants:
             t0: Start of the span [s].
             t_end: End of the span [s].
             motion: Motion along which formulas of states count, where it may pass over parts of them.
+            kinks: Whether bends and jumps alone count, as narrow parts depend on the span.
 
         Returns:
-            Instants in order, between t0 and t_end (n) [s].
+            Instants in order, after t0 and up to t_end (n) [s].
         """
         operands = self._operands
         if not operands or not t_end > t0:
             return np.zeros(0)
 
         def values(operand: int, t: Array) -> Array:
-            at = {"t": t[:, np.newaxis], "par": par[np.newaxis], **(motion.states(t) if motion is not None else {})}
-            return np.broadcast_to(self._evaluations[operand](at)[0], t.shape)
+            at = {"t": t[:, np.newaxis], "par": par[np.newaxis]}
+            return np.asarray(self._evaluations[operand](at if motion is None else {**at, **motion.states(t)})[0])
 
         if motion is not None and not _may_pass_over(operands, values, motion.steps):
             return np.zeros(0)
-        return find_instants([operand.kind for operand in operands], values, t0, t_end)
+        instants = find_instants([operand.kind for operand in operands], values, t0, t_end)
+        if not kinks:
+            return instants
+        before, behind = instants - rounding_of(instants), instants + rounding_of(instants)
+        changes = [
+            np.sign(values(i, before)) != np.sign(values(i, behind))
+            for i, operand in enumerate(operands)
+            if operand.kind == InstantKind.KINK
+        ]
+        return instants[np.any(changes, axis=0)] if changes else np.zeros(0)
 
 
 def _may_pass_over(operands: Sequence[Operand], values: Operands, steps: Array) -> bool:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import math
 from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
@@ -18,6 +19,7 @@ from symofros.runtime.model import Model
 from symofros.simulation.batch_inputs import BatchInputs
 from symofros.simulation.events import Event
 from symofros.simulation.settings import Settings
+from symofros.simulation.stepping.by_hand import AHEAD
 from symofros.simulation.stepping.met import Met
 from symofros.simulation.stepping.stepper import Stepper
 
@@ -133,6 +135,7 @@ class BatchStepper:
         settings.apply(self.single)
         self.single.set_instant(settings.instant)
         self.met: list[tuple[int, Met]] = []
+        self._failures: list[BaseException] = []
         self._native, self._memory = self.single.native, self.single.memory
         self._batch = batch = self.single.ffi.new("sym_batch *")
         batch.slots = min(SLOTS, max(2, -(-initial.n // stride)))
@@ -144,6 +147,9 @@ class BatchStepper:
             par = np.array(np.broadcast_to(par, (initial.n, model.npar)), order="C")
         self._fill_functions(par)
         self._fill_events(par, initial.n)
+        self._par = par
+        self._ahead: Any = None
+        self._fill_ahead(settings, initial.n)
         self._fill_rows(initial, results)
         self._fill_beams(initial.par, results)
         self._lay_out()
@@ -179,13 +185,40 @@ class BatchStepper:
         single.reserve_events(batch.slots * 8 * count + _EVENT_ROWS)
         self._event_trajectory = np.zeros(single.run.event_capacity, dtype=np.int64)
         batch.event_trajectory = memory.shared(self._event_trajectory)
-        self._par, self._acted_at = par, np.full((n, count + 1), -np.inf)
+        self._acted_at = np.full((n, count + 1), -np.inf)
         self._event_terminal = np.zeros((n, count), dtype=np.int32)
         self._contact_memory = np.zeros((n, len(single.contact_memory)))
         batch.contact_memory = memory.shared(self._contact_memory)
         self.forget_events(np.arange(n))
         batch.event_terminal = memory.shared(self._event_terminal)
         batch.par, batch.acted_at = memory.shared(par), memory.shared(self._acted_at)
+
+    def _fill_ahead(self, settings: Settings, n: int) -> None:
+        """What looks ahead of each trajectory, where its instants are not those of all to the end of the run."""
+        single, batch, memory = self.single, self._batch, self._memory
+        instants, laws, kinks = single.model.formula_instants, single.laws, not settings.adaptive
+        ends, own, counted = math.isfinite(settings.t_end), len(self._par) > 1, single.counted
+        differ = bool(counted) and (own or single.actions is not None)
+        if counted is None or (ends and not differ):
+            return
+        self._ahead = ahead = memory.own("sym_ahead[]", n)
+        kept: dict[int, tuple[Array, Array]] = {}
+
+        def look(_: Any, trajectory: int, t: float) -> int:
+            try:
+                par, known = self._par[trajectory if own else 0], settings.t_end if ends else t + AHEAD * settings.dt
+                stops = instants(laws, par, t, known, kinks=kinks)
+                looked_at = single.event_instants(par, t, known)
+            except BaseException as error:  # It may not pass through C.
+                self._failures.append(error)
+                return -1
+            kept[trajectory], found = (stops, looked_at), ahead[trajectory]
+            found.begin, found.known = t, math.inf if ends else known
+            found.n_stops, found.n_event_instants = len(stops), len(looked_at)
+            found.stops, found.event_instants = (single.ffi.from_buffer("double[]", x) for x in kept[trajectory])
+            return 0
+
+        batch.ahead, batch.look_ahead = ahead, memory.callback("int32_t(void *, int64_t, double)", look)
 
     def forget_events(self, rows: npt.NDArray[np.intp]) -> None:
         """No event of some trajectories has been met yet."""
@@ -266,8 +299,11 @@ class BatchStepper:
         """Set the parameters (m, npar) of some trajectories (m), in effect from their next start."""
         for kernel, prepared in self._prepared:
             prepared[rows] = kernel.prepare(par)
-        if self.single.actions is not None:
+        if len(self._par) > 1:
             self._par[rows] = par
+        if self._ahead is not None:
+            for row in rows:
+                self._ahead[int(row)].known = -math.inf
         for name, numbers in self._beam_numbers(par).items():
             self._beam_rows[name][rows] = numbers
 
@@ -281,6 +317,8 @@ class BatchStepper:
         finally:  # Ctrl-C in the main thread comes between two calls: active trajectories end where they are.
             self._native.sym_batch_stop(self._batch)
             self.take_events()
+        if self._failures:
+            raise self._failures[0]
 
 
 def lines(count: int) -> Array:

@@ -24,8 +24,8 @@ from symofros.simulation.stepping.time_slice import TimeSlice
 
 # Changes of inputs that C notes between two calls that take them, and those that are kept of one run.
 _NOTED, MOST_NOTED = 256, 1 << 18
-# Steps that adaptive methods look ahead for instants of formulas of time; of those of packages as well.
-_AHEAD = native_number("stepping/instances/instance.c", "SYM_AHEAD")
+# Steps that are looked ahead for instants of formulas of time; of those of packages as well.
+AHEAD = native_number("stepping/instances/instance.c", "SYM_AHEAD")
 # Steps of one call between looks at Ctrl-C.
 _AT_ONCE = 4096
 
@@ -134,7 +134,7 @@ class HandRun:
         run.run.acts = int(run.actions is not None)
         run.reserve(1, 1)
         self._given = par
-        self.looks_ahead = settings.adaptive or bool(run.timed_events)
+        self.looks_ahead = settings.adaptive or run.counted is not None
         self.held = held_by_hand(model, inputs, fixed)
         memory = run.memory
         self.hand = hand = run.ffi.new("sym_hand *")
@@ -280,15 +280,13 @@ class HandRun:
             self._look_ahead(int(self.hand.target - self.hand.mark))
 
     def _look_ahead(self, steps: int) -> None:
-        """Find the instants of formulas of time at which adaptive steps have to end, or events are looked at."""
+        """Find the instants of formulas of time at which steps end or formulas jump, or events are looked at."""
         if not self.looks_ahead:
             return
         t_end = self.start.t + (int(self.hand.mark) + steps) * self.settings.dt
         if t_end > self._known:
-            self._known = max(t_end, self.t + _AHEAD * self.settings.dt)
-            self.run.set_event_instants(self.t, self._known)
-            if self.settings.adaptive:
-                self.run.set_stops(self.t, self._known)
+            self._known = max(t_end, self.t + AHEAD * self.settings.dt)
+            self.run.look_ahead(self.t, self._known)
 
     def _seal(self) -> None:
         """What C has noted joins the chain; of a run that changes its inputs too often the first part is forgotten."""

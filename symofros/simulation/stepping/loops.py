@@ -99,8 +99,14 @@ def run_own(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show
     """Run our own integrator to its end, or to `max_steps`."""
     recorded = Recorded(stepper.start(q, v, max(_ROWS, len(settings.grid))))
     recorded.take(stepper)
+    counted = stepper.counted or []
+    values = stepper.par[counted]
 
     def most(steps: int) -> int:
+        nonlocal values
+        if counted and not np.array_equal(stepper.par[counted], values):  # An action within the run has changed some.
+            stepper.look_ahead(stepper.t, settings.t_end)
+            values = stepper.par[counted]
         return steps if settings.max_steps is None else min(steps, settings.max_steps - int(stepper.run.steps))
 
     return drive(stepper, recorded, most, lambda _: show(stepper.t))

@@ -195,24 +195,44 @@ class Stepper(BoundRun):
         """Take in held samples and jumps at the end of the step."""
         self.native.sym_run_end_step(self.run)
 
-    def set_stops(self, t0: float, t_end: float) -> None:
-        """Find the instants between start and end [s] of a run at which steps have to end, for formulas of time."""
-        stops = self.model.formula_instants(list(self.inputs.formulas.values()), self.par, t0, t_end)
+    @property
+    def counted(self) -> list[int] | None:
+        """Indices of the parameters on which instants depend; None where no formula of time has any."""
+        instants = self.model.formula_instants
+        found = [instants.parameters(formulas) for formulas in (self.laws, self.timed_events)]
+        return None if found == [None, None] else sorted({i for indices in found for i in indices or ()})
+
+    def look_ahead(self, t0: float, t_end: float) -> None:
+        """Find the instants of formulas of time in a run [s], at which steps end or events are looked at."""
+        self.set_event_instants(t0, t_end)
+        self.set_stops(t0, t_end, kinks=not self.run.adaptive)
+
+    def set_stops(self, t0: float, t_end: float, *, kinks: bool = False) -> None:
+        """Find the instants in a run [s] at which steps have to end for formulas of time, or those of kinks alone."""
+        stops = self.model.formula_instants(self.laws, self.par, t0, t_end, kinks=kinks)
         self.system.n_stops, self.system.stops = len(stops), self.memory.doubles(stops)
+
+    @property
+    def laws(self) -> list[Any]:
+        """Formulas of inputs."""
+        return list(self.inputs.formulas.values())
 
     @property
     def timed_events(self) -> list[Any]:
         """Formulas of events in which time stands."""
         return [event.formula for event in self.events if _TIMED.search(str(event.formula))]
 
+    def event_instants(self, par: Array, t0: float, t_end: float) -> Array:
+        """Instants in a run (n) [s] at which formulas of time in events bend, jump or are narrow, and between them."""
+        if not (formulas := self.timed_events):
+            return np.zeros(0)
+        jumps = self.model.formula_instants(formulas, par, t0, t_end)
+        return np.sort(np.concatenate([jumps, 0.5 * (jumps[1:] + jumps[:-1])]))  # Values at jumps may be neither.
+
     def set_event_instants(self, t0: float, t_end: float) -> None:
-        """Find the instants in a run at which formulas of time in events bend, jump or are narrow, to look there."""
-        if formulas := self.timed_events:
-            jumps = self.model.formula_instants(formulas, self.par, t0, t_end)
-            instants = np.sort(
-                np.concatenate([jumps, 0.5 * (jumps[1:] + jumps[:-1])])
-            )  # Values at jumps may be neither.
-            self.system.n_event_instants, self.system.event_instants = len(instants), self.memory.doubles(instants)
+        """Look for events at their instants in a run."""
+        instants = self.event_instants(self.par, t0, t_end)
+        self.system.n_event_instants, self.system.event_instants = len(instants), self.memory.doubles(instants)
 
     def next_stop(self, t: float, end: float) -> float:
         """The first instant after t at which a step has to end, else `end` [s]; for integrators of others."""

@@ -151,6 +151,37 @@ def test_angular_velocities_belong_to_their_quaternions(seed: int) -> None:
             sf.simulate(carried(), t_end=1.0, u=law | wrong)
 
 
+@cache
+def free_base() -> tuple[sf.Model, dict[str, str]]:
+    """A pendulum on a base that is moved as a whole, and inputs that turn it by 3 rad/s about z."""
+    base = sf.RigidBody("base", sf.Joint("f", "free", prescribed=True), sf.Inertia(1.0, (0, 0, 0), (1.0, 1.0, 1.0)))
+    swing = sf.Joint("q", "revolute", "base", position=(0.3, 0, 0), axis=(0, -1, 0))
+    arm = sf.RigidBody("arm", swing, sf.Inertia(1.0, (0.5, 0, 0), (0.001, 0.1, 0.1)))
+    turning = {"f.qz": "sin(1.5*t)", "f.qw": "cos(1.5*t)", "f.wz": "3"}
+    return sf.compile(sf.System("moved", (base, arm))), turning
+
+
+@pytest.mark.parametrize(
+    ("velocity", "said"),
+    [
+        ({}, "'f.vx' is 0, and 'f.px' changes at"),
+        ({"f.vx": "0.6*cos(2*t)"}, "'f.vx' is .*, and 'f.px' changes at"),
+        ({"f.vx": "0.6*cos(2*t)*cos(3*t)", "f.vy": "0.6*cos(2*t)*sin(3*t)"}, "'f.vy' is .*, and 'f.py' changes at"),
+        ({"f.vx": "0.6*cos(2*t)*cos(3*t)", "f.vy": "-0.6*cos(2*t)*sin(3*t)"}, ""),
+    ],
+)
+def test_velocities_of_a_free_joint_belong_to_its_place_and_rotation(velocity: dict[str, str], said: str) -> None:
+    """They are those in its own axes; where they are right the motion is."""
+    model, turning = free_base()
+    u = {"f.px": "0.3*sin(2*t)", **turning, **velocity}
+    if said:
+        with pytest.raises(sf.SymofrosError, match=said):
+            sf.simulate(model, [0.7], t_end=4.0, u=u)
+        return
+    run = sf.simulate(model, [0.7], t_end=4.0, u=u)
+    assert run.q[-1, 0] == pytest.approx(-0.31714839, abs=1e-7) and not run.outcome.notes  # SciPy, DOP853 at 1e-12.
+
+
 def test_prescribed_motions_of_python_functions_are_judged_by_their_values() -> None:
     """It may have a state, so that it is not called beforehand: a note."""
     wrong = sf.simulate(crane(), t_end=1.0, u=lambda t, q, v: [0.3 * t, 0.1, 0.0], dt=1e-2)

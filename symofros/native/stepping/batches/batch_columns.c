@@ -3,6 +3,8 @@
  * A step at which one slot needs more than that, because it ends, fails or records within the step, is made by rows. */
 
 static void sym_batch_assign(sym_batch *b, int32_t slot, int64_t trajectory);
+static void sym_batch_take_ahead(sym_batch *b, int32_t slot);
+static int32_t sym_batch_knows(const sym_batch *b, int32_t slot, double t, double t1);
 
 /* Whether steps are made by columns: of trees in scalar coordinates whose inputs are no functions of the caller's, by
  * explicit methods of fixed steps whose slopes no later step takes over. */
@@ -12,7 +14,7 @@ static int32_t sym_batch_has_columns(const sym_batch *b) {
     int32_t i, scalar = 1;
     for (i = 0; i < s->n_segments; ++i) scalar &= s->segments[i].kind == SYM_SEGMENT_LINEAR && s->segments[i].q == s->segments[i].v;
     return b->forward_dynamics.lanes != NULL && scalar && r->method <= SYM_METHOD_SEMI_IMPLICIT && !r->adaptive && !r->project &&
-           r->tableau.fsal_stage == 0 && r->record_every == 0 && s->nc + s->n_beams + s->n_stops + s->n_events == 0 &&
+           r->tableau.fsal_stage == 0 && r->record_every == 0 && s->nc + s->n_beams + s->n_events == 0 &&
            s->n_quaternion_inputs == 0 && s->callback == NULL && (b->law.function == NULL || b->law.lanes != NULL);
 }
 
@@ -118,7 +120,7 @@ static int32_t sym_columns_propose(sym_batch *b) {
         double t1 = b->column_t0[i] + (b->column_steps[i] + 1.0) * h;
         t1 = fabs(t1) < SYM_ROUNDED_ZERO * h ? 0.0 : t1; /* sym_multiple */
         b->t1[i] = t1, b->h[i] = t1 - b->column_t[i];
-        special |= (t1 >= last) | (b->column_steps[i] + 1.0 >= most);
+        special |= (t1 >= last) | (b->column_steps[i] + 1.0 >= most) | !sym_batch_knows(b, i, b->column_t[i], t1);
     }
     for (i = 0; i < n && r->n_grid > 0; ++i)
         special |= !((b->column_record[i] - b->column_t[i]) / b->h[i] > 1.0 - SYM_GRID_BEFORE);
@@ -192,17 +194,27 @@ static void sym_columns_combine(const sym_batch *b, int32_t stages, const double
     }
 }
 
+/* Times of stages at c, in parts of the step: sym_stage_time. */
+static void sym_columns_place_times(sym_batch *b, double c) {
+    const int32_t n = b->n_active, stops = b->ahead != NULL || b->prototype->system->n_stops > 0;
+    int32_t i;
+    for (i = 0; i < n; ++i) {
+        double first = b->column_t[i], last = b->t1[i];
+        const double t = first + c * b->h[i];
+        if (stops) {
+            sym_batch_take_ahead(b, i); /* another group may have had the slot */
+            first = sym_first_time(b->systems + i, first), last = sym_last_time(b->systems + i, last);
+        }
+        b->t[i] = t > last ? last : t < first ? first : t;
+    }
+}
+
 /* One stage: sym_batch_evaluate_stage. */
 static void sym_columns_evaluate_stage(sym_batch *b, int32_t stage) {
     const sym_tableau *method = &b->prototype->tableau;
-    const double c = method->c[stage];
-    int32_t i, n = b->n_active;
     sym_columns_combine(b, stage, method->a + (size_t)stage * (size_t)method->dense_stages, 0, b->q,
                         b->k + (size_t)stage * 2 * sym_columns_half(b));
-    for (i = 0; i < n; ++i) {
-        const double first = b->column_t[i], last = b->t1[i], t = first + c * b->h[i];
-        b->t[i] = t > last ? last : t < first ? first : t; /* sym_stage_time */
-    }
+    sym_columns_place_times(b, method->c[stage]);
     sym_columns_evaluate(b, stage);
 }
 
@@ -255,7 +267,7 @@ static int32_t sym_columns_step(sym_batch *b) {
     if (!sym_columns_propose(b)) return 0;
     memset(b->lost, 0, (size_t)b->slots * sizeof *b->lost);
     memcpy(b->q, b->states, half * sizeof *b->q), memcpy(b->k, b->states + half, half * sizeof *b->k);
-    memcpy(b->t, b->column_t, (size_t)b->slots * sizeof *b->t);
+    sym_columns_place_times(b, 0.0);
     sym_columns_evaluate(b, 0);
     for (stage = 1; stage < method->stages; ++stage) sym_columns_evaluate_stage(b, stage);
     if (b->prototype->method == SYM_METHOD_EXPLICIT) sym_columns_combine(b, method->stages, method->b, 1, b->y1, b->y1 + half);

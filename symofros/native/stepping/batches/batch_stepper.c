@@ -149,6 +149,22 @@ static void sym_batch_set_all_parameters(sym_batch *b, sym_system *s, int32_t sl
     sym_batch_set_parameters(&b->contact_state, &s->contact_state, slot, trajectory);
 }
 
+/* A slot takes what is known ahead of its trajectory. */
+static void sym_batch_take_ahead(sym_batch *b, int32_t slot) {
+    sym_system *s = b->systems + slot;
+    const sym_ahead *ahead;
+    if (b->ahead == NULL) return;
+    ahead = b->ahead + b->trajectory_of_slot[slot];
+    s->n_stops = ahead->n_stops, s->stops = ahead->stops;
+    s->n_event_instants = ahead->n_event_instants, s->event_instants = ahead->event_instants;
+}
+
+/* Whether a step of a slot's trajectory from t to t1 lies in the span for which that is. */
+static int32_t sym_batch_knows(const sym_batch *b, int32_t slot, double t, double t1) {
+    const sym_ahead *ahead = b->ahead == NULL ? NULL : b->ahead + b->trajectory_of_slot[slot];
+    return ahead == NULL || (ahead->begin <= t && t1 <= ahead->known);
+}
+
 /* A slot takes the inputs, parameters and memory of a trajectory. */
 static void sym_batch_assign(sym_batch *b, int32_t slot, int64_t trajectory) {
     const sym_system *prototype = b->prototype->system;
@@ -156,6 +172,7 @@ static void sym_batch_assign(sym_batch *b, int32_t slot, int64_t trajectory) {
     sym_signal *signals = b->signals + (size_t)slot * (size_t)prototype->n_signals;
     int32_t k;
     b->trajectory_of_slot[slot] = trajectory;
+    sym_batch_take_ahead(b, slot);
     sym_batch_place(b, b->runs + slot, trajectory);
     s->u_constant = b->u_constant.at + trajectory * b->u_constant.stride;
     for (k = 0; k < prototype->n_signals; ++k)
@@ -232,6 +249,15 @@ static void sym_batch_count_events(sym_batch *b, const sym_run *r, int64_t traje
     while (p->n_event_records < r->n_event_records) b->event_trajectory[p->n_event_records++] = trajectory;
 }
 
+/* What is known ahead of a slot's trajectory is looked for anew, from time t on. Returns 0 or a status. */
+static int32_t sym_batch_look_ahead(sym_batch *b, int32_t slot, double t) {
+    const int64_t trajectory = b->trajectory_of_slot[slot];
+    if (b->ahead == NULL) return 0;
+    if (b->look_ahead(b->data, trajectory, t) != 0) return SYM_CALLBACK_FAILED;
+    sym_batch_take_ahead(b, slot);
+    return 0;
+}
+
 /* Activate the next trajectory; its first slope and step size are evaluated alone, in the prototype's memory. */
 static void sym_batch_activate_next(sym_batch *b) {
     const int32_t slot = b->n_active++;
@@ -249,6 +275,7 @@ static void sym_batch_activate_next(sym_batch *b) {
     if (s->n_contacts > 0) sym_run_forget_contacts(r);
     if (status == 0 && !(sym_all_finite(s->nq, r->q) && sym_all_finite(s->nv, r->v))) status = SYM_DIVERGED;
     r->n_event_records = b->prototype->n_event_records, r->event_capacity = b->prototype->event_capacity;
+    if (status == 0) status = sym_batch_look_ahead(b, slot, r->t);
     if (status == 0) status = sym_run_start(r);
     sym_batch_count_events(b, r, trajectory);
     if (s->n_sticking + s->n_contacts > 0) sym_batch_set_all_parameters(b, b->systems + slot, slot, trajectory); /* modes have been chosen */
@@ -368,7 +395,7 @@ static int32_t sym_batch_act(sym_batch *b, int32_t slot) {
     sym_prepare_call(&s->project, r->par), sym_prepare_call(&s->events, r->par), sym_prepare_call(&s->contact_state, r->par);
     sym_hold_by_modes(s, r->par);
     sym_batch_set_all_parameters(b, s, slot, trajectory);
-    return status;
+    return sym_batch_look_ahead(b, slot, r->t) != 0 ? SYM_CALLBACK_FAILED : status;
 }
 
 /* After a step of a slot that was cut, with that status: actions are done, and what is left of a step of fixed length is made
@@ -409,6 +436,8 @@ static void sym_batch_step(sym_batch *b) {
     sym_batch_first_slopes(b);
     for (i = b->n_active - 1; i >= 0; --i) {
         sym_workspace w = sym_batch_workspace(b, i);
+        if (b->status[i] == 0 && !sym_batch_knows(b, i, b->runs[i].t, b->runs[i].t + b->runs[i].h))
+            b->status[i] = sym_batch_look_ahead(b, i, b->runs[i].t);
         if (b->status[i] == 0) b->status[i] = sym_propose_step(b->runs + i, &w, b->h + i, b->t1 + i);
         if (b->status[i] != 0) sym_batch_retire(b, i, b->status[i]);
     }

@@ -31,6 +31,12 @@ typedef struct sym_batch_function { /* a model function that is evaluated for al
     double *column_work;
 } sym_batch_function;
 
+typedef struct sym_ahead { /* what is known ahead of the formulas of time of one trajectory, as in sym_system */
+    double begin, known; /* the span for which it is [s] */
+    int32_t n_stops, n_event_instants;
+    const double *stops, *event_instants;
+} sym_ahead;
+
 typedef struct sym_batch {
     /* By the caller. */
     /* Settings, and the system of a single run, which only this batch uses; its table of events holds those that were met. */
@@ -46,6 +52,10 @@ typedef struct sym_batch {
     const int64_t *signal_stride; /* (n_signals) doubles from the samples of one trajectory to those of the next */
     int64_t next, stride, n;  /* trajectories of this batch: next, next + stride, ... below n */
     int64_t max_steps;        /* of each trajectory; 0: any number */
+    sym_ahead *ahead;         /* (n); NULL: the instants of the prototype are those of all trajectories, to the end */
+    /* Finds those of a trajectory from time t on, by its present parameters. Returns 0, or another number where that failed. */
+    int32_t (*look_ahead)(void *data, int64_t trajectory, double t);
+    void *data;
     /* Results, one row per trajectory: final status, time, state; steps; what the prototype's grid records. */
     int32_t *final_status;    /* below zero beforehand: the trajectory can't start */
     double *final_t, *final_q, *final_v;

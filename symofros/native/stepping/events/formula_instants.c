@@ -110,7 +110,12 @@ static int32_t sym_find_sign_changes(const sym_instant_search *search, const sym
         rows->low[m] = rows->t[k], rows->high[m] = rows->t[k + 1], rows->side[m++] = sym_sign(here);
     }
     for (i = 0; i < SYM_INSTANT_HALVINGS && m > 0; ++i) {
-        for (k = 0; k < m; ++k) rows->tried[k] = 0.5 * (rows->low[k] + rows->high[k]);
+        int32_t apart = 0;
+        for (k = 0; k < m; ++k) {
+            rows->tried[k] = 0.5 * (rows->low[k] + rows->high[k]);
+            apart |= rows->tried[k] > rows->low[k] && rows->tried[k] < rows->high[k];
+        }
+        if (!apart) break;
         search->evaluate(search->data, operand, m, rows->tried, rows->value);
         for (k = 0; k < m; ++k) {
             if (sym_sign(rows->value[k]) == rows->side[k]) rows->low[k] = rows->tried[k];
@@ -192,8 +197,9 @@ SYM_EXPORT int32_t sym_find_instants(const sym_instant_search *search, double t0
         points = sym_merge(search, rows.t, SYM_INSTANT_POINTS, instants, found);
         n = points < 0 ? -1 : sym_instants_of_operand(search, &rows, i, t_end - t0, points);
         if (n < 0) return -1;
-        for (first = 0; first < n && rows.found[first] <= t0;) ++first;
-        while (n > first && rows.found[n - 1] >= t_end) --n;
+        for (k = 0; k < n; ++k) rows.found[k] = sym_multiple(rows.found[k], t_end - t0);
+        for (first = 0; first < n && rows.found[first] < t0;) ++first;
+        while (n > first && rows.found[n - 1] > t_end) --n;
         found = sym_merge(search, instants, found, rows.found + first, n - first);
         if (found < 0) return -1;
     }

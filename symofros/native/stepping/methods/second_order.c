@@ -115,7 +115,7 @@ static int32_t sym_alpha_residual(sym_run *r, sym_workspace *memory, double h, c
     sym_twist_to_displacement(s, y1);
     sym_retract(s, r->q, y1, s->q);
     memcpy(s->v, y1 + nv, (size_t)nv * sizeof *y1);
-    *s->t = r->t + h;
+    *s->t = sym_stage_time(s, r->t + h);
     status = sym_evaluate_residual(r);
     if (status != 0) return status;
     for (i = 0; i < nv; ++i) w.right[i] = -s->residual.out[0][i];
@@ -255,7 +255,7 @@ static int32_t sym_discrete_momenta(sym_run *r, double h, const double *theta, d
     memcpy(sum, half, (size_t)nv * sizeof *sum);
     sym_twist_to_displacement(s, sum);
     sym_retract(s, r->q, sum, s->q);
-    *s->t = r->t + 0.5 * h;
+    *s->t = sym_stage_time(s, r->t + 0.5 * h);
     if (sym_evaluate_inputs(s) != 0) return SYM_CALLBACK_FAILED;
     sym_evaluate(&s->momentum);
     ++r->evaluations;
@@ -339,7 +339,7 @@ static int32_t sym_variational_step(sym_run *r, sym_workspace *memory, double h)
     if (status != 0) return status;
     sym_twist_to_displacement(s, y1);
     sym_retract(s, r->q, y1, s->q);
-    *s->t = r->t + h;
+    *s->t = sym_stage_time(s, r->t + h);
     sym_evaluate(&s->momentum); /* for M at the end of the step */
     memcpy(w.matrix, s->momentum.out[2], (size_t)nv * (size_t)nv * sizeof(double));
     rank = sym_eliminate(nv, nv, NULL, nv, w.matrix, w.scale, r->pivots, r->pivots + nv);

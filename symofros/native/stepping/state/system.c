@@ -145,11 +145,14 @@ static int32_t sym_changes_at(const sym_system *s, double t) {
 /* The time at which functions are evaluated for the slope that a step from t begins with: after a jump of a formula. */
 static double sym_first_time(const sym_system *s, double t) { return sym_stops_at(s, t) ? sym_instant(t) : t; }
 
+/* The time at which they are evaluated for the last stages of a step to t1: before a jump. */
+static double sym_last_time(const sym_system *s, double t1) { return sym_stops_at(s, t1) ? sym_before(t1) : t1; }
+
 /* A step from t to t1 begins: what begins at t1 counts from the next step on. */
 static void sym_begin_step(sym_system *s, double t, double t1) {
     s->in_step = 1, s->step_end = t1;
     s->first_stage = sym_first_time(s, t);
-    s->last_stage = sym_stops_at(s, t1) ? sym_before(t1) : t1;
+    s->last_stage = sym_last_time(s, t1);
 }
 
 /* The time at which functions are evaluated for a stage at time t. */

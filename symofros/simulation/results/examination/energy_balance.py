@@ -97,7 +97,17 @@ def _acts(run: ExaminedRun) -> bool:
     inputs = run.stepper.inputs
     signals = any(np.any(values) for _, _, values, _ in inputs.signals)
     given = inputs.callback is not None or bool(inputs.formulas) or bool(np.any(inputs.constant))
-    return given or signals or run.model.record.timed
+    return given or signals or run.model.record.timed or _states_move(run)
+
+
+def _states_move(run: ExaminedRun) -> bool:
+    """Whether states of forces move by themselves at first: a clock, or what cools down, drives as an input does."""
+    t, q, v, u = (x[:1] for x in run.states)
+    if run.moving.all():
+        return False
+    at_rest = np.where(run.moving, 0.0, v)
+    rates = run.model.forward_dynamics(q, at_rest, u, par=run.stepper.par, t=t)[:, ~run.moving]
+    return bool(np.any(rates))
 
 
 def _within(run: ExaminedRun, states: States, energy: Array) -> list[Array] | None:

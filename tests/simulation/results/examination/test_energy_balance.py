@@ -36,6 +36,17 @@ def test_a_force_that_depends_on_time_is_work(method: str, force: str) -> None:
     assert run.v[-1, 0] == pytest.approx(exact, rel=1e-5) and not run.outcome.notes, run.outcome
 
 
+@pytest.mark.parametrize("method", METHODS)
+def test_a_force_by_a_clock_of_its_own_is_work(method: str) -> None:
+    """A state of a force that moves by itself drives as time does: 1 N s about its value of 5.3, from rest."""
+    clock, force = (sf.ForceState("clock", sf.formula("1")),), sf.formula("2*max(0, 1 - abs(clock - 5.3)/0.5)")
+    tent = (sf.VirtualPower("tent", (("dx", force),)),)
+    body = sf.RigidBody("mass", sf.Joint("x", "prismatic"), sf.Inertia(1.0))
+    model = sf.compile(sf.System("mass", (body,), gravity=(0, 0, 0), virtual_power=tent, states=clock))
+    run = sf.simulate(model, t_end=10.0, method=method)
+    assert run.v[-1, 0] == pytest.approx(1.0, abs=1e-4) and not run.outcome.notes, run.outcome
+
+
 @pytest.mark.parametrize("pace", [2e5, 1e7])
 def test_weight_does_no_work_on_what_turns_many_times_in_a_step(pace: float) -> None:
     """Steps of 1000 s: over 2e5 rad speeds of one instant gain 1e6 W, and at 1e7 rad/s rounding alone 1e8 W."""
