@@ -34,7 +34,7 @@ def energy_note(run: Examined) -> str:
     energies, states = run.energies, run.states
     layout = energies.resolved.layout
     few = min(len(states[0]), int(min(max(_SHARE * run.steps, _FEWEST), _MOST)))
-    if layout.driven or few < 3:
+    if layout.driven or few < 3 or not layout.q:
         return ""
     rows = _rows(run, few)
     some = [x[rows] for x in states]

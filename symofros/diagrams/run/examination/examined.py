@@ -40,6 +40,10 @@ _AT_JUMP = 1e-3
 # speed arises where that is shorter.
 _MOMENT = 1e-3
 
+# Records whose rates are asked for: fewer than are evaluated by vectors. Steps between records from which on these may
+# show a state at one phase alone.
+_SOME, _SPARSE = 32, 8.0
+
 # Method that shows whether steps of order 1 decide rightly at samples.
 _DECIDING = "rk4"
 
@@ -128,7 +132,8 @@ class Energies:
 class Examined(SwitchedMotion):
     """A run that has come to its end.
 
-    Each mechanism is judged by itself, in its own speeds: those of others may be of another size.
+    Each mechanism is judged by itself, in its own speeds, and so are continuous states of each block: those of others
+    may be of another size.
 
     Attributes:
         energies: Energies of its mechanisms.
@@ -209,6 +214,20 @@ class Examined(SwitchedMotion):
         return jumps_at(self.states)
 
     @cached_property
+    def _sizes(self) -> Array:
+        """Size of each speed and state in the run (nv): half its range, and what its rate makes of it between records.
+
+        Few records may show a state at one phase alone: then its value counts, too.
+        """
+        t, v = self.states[0], self.states[2]
+        rates = np.abs(self.accelerations(np.unique(np.linspace(0, len(t) - 1, _SOME).astype(int)))).max(axis=0)
+        apart = float(t[-1] - t[0]) / max(1, len(t) - 1)
+        sizes = np.maximum(0.5 * np.ptp(v, axis=0), rates * apart)
+        if apart > _SPARSE * self.mean_step:
+            sizes = np.maximum(sizes, np.abs(v).max(axis=0))
+        return np.asarray(np.maximum(sizes, STILL))
+
+    @cached_property
     def sides(self) -> tuple[Numbers, Numbers]:
         """The first record and the last one at each instant at which events have acted (k), by number."""
         t = self.states[0]
@@ -250,13 +269,18 @@ class Examined(SwitchedMotion):
             )
 
     def change(self, coarse: States, fine: States, part: Part) -> tuple[float, str]:
-        """Relative change of the mechanism that changes most, and the name of its block."""
+        """Relative change of the mechanism, or of the states of the block, that changes most; and its name."""
         run, norm = None if part == "run" else self.states, _mean if part == "part" else _largest
         coarse, fine = at_equal_times(coarse, fine, _AT_JUMP * self.mean_step)
         if part == "whole":
             shares = [(_whole_change(self.layout, name, coarse, fine), name) for name in self.layout.v]
         else:
             shares = [(_change(self.layout, name, run, coarse, fine, norm), name) for name in self.layout.v]
+        with np.errstate(all="ignore"):  # What has exploded overflows.
+            apart = np.abs(coarse[2] - fine[2]).mean(axis=0) / self._sizes
+        shares += [
+            (float(apart[place.slice].max(initial=0.0)), name) for (name, _), place in self.layout.states.items()
+        ]
         return max(shares, key=lambda one: one[0] if one[0] >= 0.0 else np.inf)
 
 

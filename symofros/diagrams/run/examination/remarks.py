@@ -29,7 +29,7 @@ def remarks(run: Examined, modes: Resolution, signal: Signals) -> tuple[str, ...
         modes: How well its steps resolve the modes at some states.
         signal: Signals at its records.
     """
-    if not run.layout.v or run.steps < 1 or len(run.states[0]) < 2:
+    if not len(run.layout.v0) or run.steps < 1 or len(run.states[0]) < 2:
         return ()
     return (*_on_steps(run, modes), *_creeping(run, signal))
 

@@ -154,3 +154,51 @@ def test_wrong_decisions_at_samples_that_half_the_step_repeats_are_noted(method:
     wrong, right = runs
     assert np.abs(wrong["plant.q"] - right["plant.q"]).max() > 0.2 and not right.outcome.notes
     assert any("their error changes what is decided at a sample, and 'rk4'" in note for note in wrong.outcome.notes)
+
+
+def states_alone(rates: dict[str, str], **first: float) -> sf.Simulation:
+    """A diagram of integrators: state -> its rate, a formula of all; and their first values."""
+    diagram = sf.Diagram("states")
+    diagram.add(blocks.Formula(name="law", formulas={f"d{name}": rate for name, rate in rates.items()}))
+    for name in rates:
+        diagram.add(blocks.Integrator(name=name, start=first.get(name, 0.0)), u=f"law.d{name}")
+        diagram.connect(f"{name}.y", f"law.{name}")
+    return sf.Simulation(diagram)
+
+
+LORENZ = {"x": "10*(y - x)", "y": "x*(28 - z) - y", "z": "x*y - 8/3*z"}
+
+
+@pytest.mark.parametrize("options", [{"dt": 0.02}, {"dt": 0.005}, {"method": "dopri5"}])
+def test_states_of_blocks_that_finer_steps_change_bear_a_note(options: dict[str, Any]) -> None:
+    """No mechanism moves here; in 40 s a Lorenz system forgets its start, in 5 s it does not."""
+    simulation = states_alone(LORENZ, x=1.0, y=1.0, z=1.0)
+    (note,) = simulation.run(40.0, **options).outcome.notes
+    assert "do not determine the motion of 'x'" in note
+    if "method" in options:
+        options = {"method": "dopri5", "rtol": 1e-9, "atol": 1e-9}
+    assert not simulation.run(5.0, **options | ({"dt": 0.005} if "dt" in options else {})).outcome.notes
+
+
+def test_states_of_blocks_of_interpreted_runs_are_held_against_finer_steps() -> None:
+    simulation = states_alone(LORENZ, x=1.0, y=1.0, z=1.0)
+    assert any("do not determine" in note for note in simulation.interpret(40.0, dt=0.02, record=0.02).outcome.notes)
+    assert not simulation.interpret(1.0, dt=0.005, record=0.01).outcome.notes
+
+
+@pytest.mark.parametrize("options", [{"dt": 0.01}, {"method": "dopri5"}])
+def test_states_that_are_rounding_bear_no_note(options: dict[str, Any]) -> None:
+    """A loop at rest that nothing but 1e-17 moves, and one that oscillates, beside a state that stays."""
+    rates = {"x": "1e-17*sin(50*t) - 3*x + i", "i": "0 - x", "stays": "7 - stays"}
+    assert not states_alone(rates, stays=7.0).run(5.0, **options).outcome.notes
+    assert not states_alone({"x": "v", "v": "0 - x"}, x=1.0).run(5.0, **options).outcome.notes
+
+
+@pytest.mark.parametrize("phase", [0.0, 0.25])
+def test_records_at_one_phase_alone_show_the_size_of_a_state(phase: float) -> None:
+    """Records at the zeros of an oscillation, and at its peaks: what differs there is rounding and little."""
+    diagram = sf.Diagram("phase")
+    diagram.add(blocks.Sine(name="rate", frequency=1.0, phase=2 * np.pi * (phase + 0.25)))
+    diagram.add(blocks.Integrator(name="x", start=np.sin(2 * np.pi * phase) / (2 * np.pi)), u="rate.y")
+    run = sf.Simulation(diagram).run(5.0, dt=0.05, record=1.0)
+    assert np.ptp(run["x.y"]) < 1e-4 and not run.outcome.notes
