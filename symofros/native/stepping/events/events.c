@@ -96,10 +96,11 @@ static int32_t sym_add_errors_of_events(sym_event_step *step, double x, double r
     sym_run *r = step->run;
     sym_workspace *w = step->memory;
     double *moved = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events;
+    const int32_t row = alike < 0 ? -alike : alike;
     int32_t l, status = sym_dense_output(r, w, step->h, step->dense_ready, x, w->stage);
     if (status != 0) return status;
     sym_state_magnitudes(r, w->magnitude);
-    for (l = 0; l < 2 * r->system->nv; ++l) w->stage[l] += (l / abs(alike) % 2 == (alike > 0) ? -1.0 : 1.0) * (atol + rtol * w->magnitude[l]);
+    for (l = 0; l < 2 * r->system->nv; ++l) w->stage[l] += (l / row % 2 == (alike > 0) ? -1.0 : 1.0) * (atol + rtol * w->magnitude[l]);
     sym_load_chart_state(r, r->t + x * step->h, w->stage);
     status = sym_event_values(r, moved);
     for (l = 0; l < r->system->n_events; ++l) errors[l] += fabs(moved[l] - values[l]);
