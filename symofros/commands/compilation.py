@@ -40,7 +40,7 @@ def compile_description(
         output: Folder of C; None: none is written.
 
     Returns:
-        What the command tells: name, seconds; of C that is written operations, bytes, files.
+        What the command tells: name, seconds, whether it was compiled; of C that is written operations, bytes, files.
 
     Raises:
         typer.Exit: The description or the request is refused, which is said.
@@ -61,7 +61,7 @@ def compile_description(
         text = compilation.source() if output is not None else ""
     except SymofrosError as error:
         raise refuse(error) from None
-    result = {"name": system.name, "seconds": seconds}
+    result = {"name": system.name, "seconds": seconds, "compiled": bool(compiled.libraries)}
     return result if output is None else result | _write(compilation, text, output)
 
 

@@ -39,7 +39,12 @@ def compile_command(
     request = repr((reading, functions, frames))
     start = time.perf_counter()
     name = _known_name(model, request) if output is None else None
-    result: dict[str, Any] = {"name": name, "functions": names, "seconds": time.perf_counter() - start}
+    result: dict[str, Any] = {
+        "name": name,
+        "functions": names,
+        "seconds": time.perf_counter() - start,
+        "compiled": True,
+    }
     if name is None:
         from symofros.commands.compilation import compile_description  # The generator takes longer than all above.
 
@@ -48,10 +53,9 @@ def compile_command(
     if as_json:
         print(json.dumps(result, indent=1))
         return
-    typer.echo(
-        f"{result['name']}: {len(names)} function{'s' * (len(names) != 1)} generated and compiled, or found in the"
-        f" cache, in {result['seconds']:.2f} s"
-    )
+    done = "and compiled, or found in the cache" if result["compiled"] else "and not compiled, as no compiler was found"
+    functions_made = f"{len(names)} function{'s' * (len(names) != 1)} generated"
+    typer.echo(f"{result['name']}: {functions_made} {done}, in {result['seconds']:.2f} s")
     if output is not None:
         typer.echo(f"{result['operations']} operations, {result['bytes'] / 1024:.0f} KiB of C")
     for file in result.get("files", ()):

@@ -11,6 +11,7 @@ import numpy.typing as npt
 from symofros.base.arguments import check_argument
 from symofros.base.arrays import numeric
 from symofros.base.functions import MODEL_FUNCTIONS, generated_with
+from symofros.base.threads import ending_together, submit
 from symofros.runtime.calls.bound import Bound, Layout, bind, bind_batch
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import ArrayLike as ArrayLike
@@ -90,9 +91,10 @@ class Model(
         units = dict.fromkeys(generated_with(name, self.nc > 0) for name in missing)
         if not units:
             return
-        with ThreadPoolExecutor() as pool:  # A few more than processors: dozens of compilers at once only take memory.
+        # A few threads more than processors: dozens of compilers at once only take memory.
+        with ThreadPoolExecutor() as pool, ending_together():
             try:
-                for made in [pool.submit(self._make, unit[0], "") for unit in units]:
+                for made in [submit(pool, self._make, unit[0], "") for unit in units]:
                     made.result()
             except BaseException:  # Ctrl-C, too: what has not begun is left.
                 pool.shutdown(wait=False, cancel_futures=True)

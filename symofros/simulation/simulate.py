@@ -12,6 +12,7 @@ import numpy as np
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array
+from symofros.base.threads import ending_together, submit
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.calls import native_library, native_library_is_loaded
 from symofros.runtime.model import ArrayLike, Model
@@ -275,8 +276,8 @@ def prepare_run(model: Model, settings: Settings | None = None) -> None:
     if native_library_is_loaded():  # A thread would take longer than a short run.
         model.prepare(*names)
         return
-    with ThreadPoolExecutor(1) as pool:
-        integrator = pool.submit(native_library)
+    with ThreadPoolExecutor(1) as pool, ending_together():
+        integrator = submit(pool, native_library)
         model.prepare(*names)
         integrator.result()
 

@@ -322,3 +322,14 @@ def test_a_full_disk_is_not_called_a_matter_of_rights(
     assert refuse(OSError(number, os.strerror(number), filename)).exit_code == 2
     said = capsys.readouterr().err
     assert (filename or "a file") in said and "make room" in said and "rights" not in said
+
+
+def test_without_a_compiler_nothing_is_called_compiled(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
+    monkeypatch.setenv("SYMOFROS_CACHE", str(tmp_path))
+    command = "compile", CART_POLE, "--functions", "kinetic_energy"
+    assert "compiled, or found" in invoke(*command).output and json.loads(invoke(*command, "--json").output)["compiled"]
+    for module in ("compiler", "commands.compile", "commands.compilation"):
+        monkeypatch.setattr(f"symofros.{module}.find_toolchain", lambda *_: None)
+    with pytest.warns(sf.CompilerMissingWarning):
+        said = invoke(*command, "-o", tmp_path / "c").output
+    assert "1 function generated and not compiled, as no compiler was found" in said and "cart_pole.c" in said

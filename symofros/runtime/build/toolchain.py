@@ -19,7 +19,7 @@ from functools import cache
 from pathlib import Path
 from threading import Event, Timer
 
-from symofros.base.threads import try_to_start
+from symofros.base.threads import ended_by, try_to_start
 from symofros.errors import CompileError, Problem
 
 # -fno-math-errno lets sqrt and sincos be instructions and single calls; -ffast-math was measured and gains nothing.
@@ -212,7 +212,8 @@ def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int)
         watch.daemon = True
         try:
             # A process that ends starts no thread; it builds what its successors find in the cache.
-            status = process.wait() if try_to_start(watch) else _wait(process, limit, end)
+            with ended_by(lambda: _end_group(process)):
+                status = process.wait() if try_to_start(watch) else _wait(process, limit, end)
         except BaseException:  # As of a user who interrupts.
             _end_group(process)
             process.wait()

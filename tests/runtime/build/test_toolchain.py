@@ -6,15 +6,17 @@ import ctypes
 import sys
 import time
 from collections.abc import Iterator
+from concurrent.futures import ThreadPoolExecutor
 from pathlib import Path
 
 import pytest
 
 import symofros as sf
+from symofros.base.threads import ending_together, submit
 from symofros.errors import Problem
 from symofros.runtime.build import toolchain
 from symofros.runtime.build.build import build_library
-from symofros.runtime.build.toolchain import GCC_FLAGS, find_toolchain
+from symofros.runtime.build.toolchain import GCC_FLAGS, call_compiler, find_toolchain
 from tests.late import SHELL
 
 
@@ -150,3 +152,15 @@ def test_children_of_a_stopped_compiler_are_stopped(monkeypatch: pytest.MonkeyPa
             return
         time.sleep(0.02)
     pytest.fail("it runs on")
+
+
+def test_compilers_in_other_threads_end_with_an_interrupt(tmp_path: Path) -> None:
+    """Ctrl-C in the first run on a machine waited for the compiler of the integrator."""
+    compiler = [sys.executable, "-c", f"import time; open({str(tmp_path / 'began')!r}, 'w'); time.sleep(100)"]
+    start = time.perf_counter()
+    with ThreadPoolExecutor(1) as pool, pytest.raises(KeyboardInterrupt), ending_together():
+        called = submit(pool, call_compiler, compiler, "none", tmp_path, "")
+        while not (tmp_path / "began").exists():
+            time.sleep(0.01)
+        raise KeyboardInterrupt
+    assert time.perf_counter() - start < 50.0 and isinstance(called.exception(), sf.CompileError)
