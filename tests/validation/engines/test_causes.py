@@ -15,10 +15,11 @@ from validation.engines.causes.cause import FOLDER, read, stated
 from validation.engines.causes.corrections import by_columns
 from validation.engines.causes.grouping import causes_of, stale, without_their_causes
 from validation.engines.matrix import SEED, Truths, judged
+from validation.engines.models import covering
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
 from validation.engines.report import compose
-from validation.engines.verdicts import RED
+from validation.engines.verdicts import RED, Cell
 from validation.engines.workers import Job
 from validation.reporting import html, markdown
 from validation.reporting.provenance import Provenance
@@ -122,6 +123,28 @@ def test_stated_causes_are_sentences_of_an_engine_that_is_there(path: Path) -> N
             assert text.rstrip('"').endswith("."), text
         functions = OWN[cause.engine].functions
         assert any(re.fullmatch(pattern, name) for pattern in cause.functions for name in functions), cause.name
+
+
+@pytest.mark.parametrize(
+    ("features", "function", "name"),
+    [
+        (("0: hinge", "0: actearly"), "scene_actuator_force", "activations taken early"),
+        (("no spring", "0: hinge", "0: damper"), "scene_qacc", "springs or dampers that are disabled"),
+        (("implicitfast", "0: hinge", "0: muscle"), "scene_qvel", "muscles in implicitfast"),
+        (("implicitfast", "0: hinge", "0: ctrlrange"), "scene_qvel", "controls beyond their range in implicitfast"),
+        (("implicitfast", "0: hinge", "0: forcerange"), "scene_qvel", "clamped actuators in implicitfast"),
+        (("0: hinge", "0: connect"), "scene_qfrc_constraint", "velocity products of points and welds"),
+    ],
+)
+def test_scenes_have_the_causes_of_their_features(features: tuple[str, ...], function: str, name: str) -> None:
+    cell = Cell("mjx", f"scene 1: {', '.join(features)}", function, "wrong")
+    assert next(one.name for one in stated() if one.explains(cell)) == name
+
+
+def test_patterns_of_scenes_are_those_of_some_scene() -> None:
+    """In the order in which their names have features."""
+    patterns = {one for cause in stated() for one in cause.trees if one.startswith("scene")}
+    assert {one for one in patterns if not any(re.fullmatch(one, name) for name in covering.trees())} == set()
 
 
 def test_files_of_two_formats_have_no_reader_in_common() -> None:

@@ -98,7 +98,7 @@ _UNKNOWN = {
     for devices in DEVICES.values()
     for name, one in devices.items()
     if one.steps or name.startswith(_UNSUPPORTED) or not (_PLAIN in one.model or _SOLVED in one.model)
-} - {"springs_disabled", "dampers_disabled"}
+}
 _DEVICES = elsewhere.ways(_UNKNOWN)
 _SENSED = (
     "sensed = range({count})",
