@@ -67,7 +67,7 @@ class ForwardDynamics(Block):
         for port, frame in frame_ports(self.name, "wrench_", self.perturbed).items():
             environment.frame(self.model, frame)
             inputs.append(Port(port, (6,), "", 0.0, WRENCH))
-        names = _constraints(record.constraint_names)
+        names = record.constraint_owners
         if self.engaged:
             if not names:
                 raise DescriptionError(
@@ -133,7 +133,7 @@ class ForwardDynamics(Block):
 
     def _holds(self, context: EvaluationContext) -> Tensor:
         """1 for each condition that holds now (nc)."""
-        names = _constraints(context.environment.model(self.model).constraint_names)
+        names = context.environment.model(self.model).constraint_owners
         order = list(dict.fromkeys(names))
         return joined([context.inputs["engaged"][order.index(name)] for name in names])
 
@@ -211,8 +211,3 @@ def _names_of_outputs(function: str) -> list[str]:
     """Names of the ports of a function's outputs."""
     outputs = OFFERED[function].outputs
     return [function] if len(outputs) == 1 else [f"{function}_{output.name}" for output in outputs]
-
-
-def _constraints(names: tuple[str, ...]) -> list[str]:
-    """The constraint of each condition."""
-    return [name.split(".")[0] for name in names]

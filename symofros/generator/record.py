@@ -90,6 +90,7 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         segments=_segments(tree),
         periodic=tuple(periodic),
         constraint_names=tuple(name for item in tree.system.constraints for name in item.conditions),
+        constraint_owners=tuple(item.name for item in tree.system.constraints for _ in item.conditions),
         speed_conditions=tuple(name for item in tree.system.constraints for name in item.on_speeds),
         wrench_names=tuple(acts_on_bodies(tree.system.constraints)),
         joint_names=joint_names(tree),

@@ -192,6 +192,7 @@ class ModelRecord:
         segments: The configuration manifold, in order.
         periodic: Coordinates that are angles, so that unbounded ones are sampled in one turn.
         constraint_names: One a condition: the constraint's name, and which of its conditions.
+        constraint_owners: One a condition: the constraint's name.
         speed_conditions: Names of the conditions that bind speeds only.
         wrench_names: Constraints that act on bodies by a wrench: all but conditions by formula.
         joint_names: Joints that transmit wrenches, and tips of beams: one a link.
@@ -228,6 +229,7 @@ class ModelRecord:
     segments: tuple[Segment, ...]
     periodic: tuple[bool, ...]
     constraint_names: tuple[str, ...] = ()
+    constraint_owners: tuple[str, ...] = ()
     speed_conditions: tuple[str, ...] = ()
     wrench_names: tuple[str, ...] = ()
     joint_names: tuple[str, ...] = ()
@@ -261,7 +263,7 @@ class ModelRecord:
     @property
     def facing_conditions(self) -> tuple[int, ...]:
         """A condition of the closure of each pair of axes that is to be parallel, in the order of "facing" in C."""
-        owners = [name.rsplit(".", 1)[0] for name in self.constraint_names]
+        owners = self.constraint_owners
         return tuple(owners.index(closure.name) for closure in self.closures for _ in closure.parallel)
 
     @property

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 from collections.abc import Mapping
-from dataclasses import dataclass
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -123,7 +123,9 @@ class BlockReader(Entries):
                     error.rule,
                     f"see the fields of {kind}",
                 )
-            except (SymofrosError, ValueError, TypeError) as error:
+            except SymofrosError as error:
+                self.take(item, [replace(one, what=f"{what}: {key}: {one.what}") for one in error.problems])
+            except (ValueError, TypeError) as error:
                 self.fault(item, f"{what}: {key} does not fit", f"{error}", f"as {kind} takes it", "mend it")
         for key in sorted({entry_of(name) for name in required(owner) - {"name"}} - entries.keys()):
             self.missing(node, what, key, entries, f"{kind} needs {key}")

@@ -77,6 +77,7 @@ def place_parts(
         stepper.set_instant(settings.instant)
         stepper.recall(begin.met, settings.t0)
         replace(settings, t0=begin.t).apply(stepper)
+        stepper.look_ahead_after_actions()
         stepper.set_stops(begin.t, settings.t_end)  # Of fixed steps, too: the diagram's own loop ends them there.
         if layout.driven:
             stepper.run.loss_limit = math.inf

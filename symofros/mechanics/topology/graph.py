@@ -25,9 +25,10 @@ from symofros.mechanics.topology.constraints import (
     same_body_problems,
 )
 from symofros.mechanics.topology.contacts import contact_conditions
-from symofros.mechanics.topology.coordinates import coordinate_symbols, rate_symbols, speed_symbols
+from symofros.mechanics.topology.coordinates import coordinate_symbols, rate_symbols, speed_symbols, state_names
+from symofros.mechanics.topology.derived_names import derived_name_problems
 from symofros.mechanics.topology.formulas import formula_problems, power_problems
-from symofros.mechanics.topology.frames import frame_remedy, frames_of, full_names
+from symofros.mechanics.topology.frames import frame_remedy, frames_of
 from symofros.mechanics.topology.friction import friction_conditions
 from symofros.mechanics.topology.joints import joint_number_problems, joint_problems
 from symofros.mechanics.topology.numbers import Numbers
@@ -130,23 +131,9 @@ class _Checker:
                     "choose another name",
                     self.where("body", WORLD),
                 )
-        yield from self._full_names_unique()
+        yield from derived_name_problems(self.system)
         yield from self._symbols_unique()
         yield from self.unusable_names()
-
-    def _full_names_unique(self) -> Iterator[Problem]:
-        """Frames are found by BODY.FRAME, which may be another body's name where names have dots."""
-        owners: dict[str, str] = {}
-        for body in self.system.bodies:
-            for own, name in full_names(body):
-                if owners.setdefault(name, body.name) != body.name:
-                    yield Problem(
-                        f"two frames called '{name}'",
-                        f"on bodies {listed([owners[name], body.name])}",
-                        "bodies, and frames as BODY.FRAME, have different names",
-                        "rename one of them",
-                        self.where(*(("body", name) if own == name else ("frame", body.name, own))),
-                    )
 
     def unusable_names(self) -> Iterator[Problem]:
         """Names that no file holds and no message shows."""
@@ -209,6 +196,9 @@ class _Checker:
         stated = [("parameter", item.name, item.name) for item in self.system.parameters]
         stated += [("input", item.name, symbol_of(item.name)) for item in self.system.inputs]
         stated += [("state", item.name, symbol_of(item.name)) for item in self.system.states]
+        stated += [("state", name, symbol_of(name)) for joint in self.joints for name in state_names(joint)]
+        balls = (names for contact in self.system.contacts for names in contact.state_names)
+        stated += [("state", name, symbol_of(name)) for names in balls for name in names]
         for kind, name, symbol in stated:
             if symbol in taken:
                 yield Problem(

@@ -260,6 +260,7 @@ static int32_t sym_handle_events(sym_diagram *d, int32_t part) {
         const double t_end = stopped->t_end;
         sym_workspace w = sym_workspace_of(stopped);
         status = sym_run_act(stopped);
+        if (status >= 0 && stopped->look_ahead != NULL && stopped->look_ahead(stopped->look_data) != 0) status = SYM_CALLBACK_FAILED;
         ends = status == SYM_TERMINAL_EVENT;
         if (d->t_end < HUGE_VAL) stopped->t_end = d->t_end; /* of the motion that begins */
         if (status >= 0) status = sym_begin_motion_anew(stopped, &w);

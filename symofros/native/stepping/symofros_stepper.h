@@ -335,6 +335,9 @@ typedef struct sym_run {
     /* Actions of events; NULL: none. Where `acts` they are done on the way, else the run ends before them: sym_run_act. */
     const sym_actions *actions;
     int32_t acts;
+    /* Finds the instants of formulas of time anew, by the parameters after actions that diagrams do. Not 0: that failed. */
+    int32_t (*look_ahead)(void *data);
+    void *look_data;
     double *par, *acted_at;        /* (npar) present parameters; (n_events + 1) when each event has acted last, and the begin */
     double *event_done;            /* (event_capacity, sym_done_size) */
     int64_t first_met, met_end;    /* rows of the events at which the run has been cut last: first, behind the last */

@@ -209,8 +209,29 @@ class Stepper(BoundRun):
 
     def set_stops(self, t0: float, t_end: float, *, kinks: bool = False) -> None:
         """Find the instants in a run [s] at which steps have to end for formulas of time, or those of kinks alone."""
+        self._looked: tuple[float, bool] = t_end, kinks
         stops = self.model.formula_instants(self.laws, self.par, t0, t_end, kinks=kinks)
         self.system.n_stops, self.system.stops = len(stops), self.memory.doubles(stops)
+
+    def look_ahead_after_actions(self) -> None:
+        """Find those at which steps have to end anew where an action that C does, in a diagram, has changed them."""
+        if self.actions is None or not (counted := self.counted):
+            return
+        values = self.par[counted]
+
+        def look(_: Any) -> int:
+            nonlocal values
+            try:
+                self.take_parameters()
+                if not np.array_equal(self.par[counted], values):
+                    values, (t_end, kinks) = self.par[counted], self._looked
+                    self.set_stops(self.t, t_end, kinks=kinks)
+            except BaseException as error:  # It may not pass through C.
+                self.failure = error
+                return -1
+            return 0
+
+        self.run.look_ahead = self.memory.callback("int32_t(void *)", look)
 
     @property
     def laws(self) -> list[Any]:

@@ -155,6 +155,13 @@ def _bowl() -> Case:
     return Case(in_shell(0.4), {}, 1.0, {"ball.px": 0.3, "ball.vy": 2.0, "ball.vz": 3.0})
 
 
+def _moved_push() -> Case:
+    """An event moves a push, and what another event looks for, to an instant that is known from then on alone."""
+    push = sf.Load((sf.formula("100*max(0, 1 - abs(t - at)/0.01)"), 0, 0))
+    events = {"move": sf.Event("t - 1", action={"at": 5.3}), "narrow": "exp(-((t - at)/1e-3)^2) - 0.5"}
+    return Case(replace(slide(loads=(push,)), parameters=(sf.Parameter("at", 20.0),)), events, 10.0)
+
+
 CASES = {
     "bowl": _bowl(),
     "backspin": _backspin(),
@@ -209,6 +216,15 @@ def test_a_mechanism_alone_moves_as_it_is_simulated(name: str, options: dict[str
     assert all("persists" in one for one in alone.outcome.notes), (
         "constraints that hold bodies at rest pass over nothing"
     )
+
+
+@pytest.mark.parametrize("method", ["rk4", "dopri5", "dop853"])
+def test_instants_of_formulas_of_time_are_those_after_an_action(method: str) -> None:
+    """Of a push of 1 N s, and of a narrow event: the search behind the action is by its parameters."""
+    case = _moved_push()
+    run = sf.Simulation(diagram(case)).run(case.t_end, record=case.t_end, method=method)
+    assert run["plant.v"][-1] == pytest.approx(1.0, abs=1e-6) and not run.outcome.notes, run.outcome
+    assert [one.name for one in run.events["plant"]] == ["move", "narrow", "narrow"]
 
 
 def _handed(events: Mapping[str, Any], **model: Any) -> sf.Diagram:

@@ -73,3 +73,51 @@ def test_a_body_called_as_the_frame_of_another_is_refused(other: str) -> None:
     stated = [ground, body(other, "world"), body("a", "world", frames=("tip",))]
     with pytest.raises(sf.DescriptionError, match=f"two frames called '{other}'"):
         build_tree(sf.System("s", stated))
+
+
+BEAM = sf.Beam("bm", sf.Joint("clamp", "fixed"), length=1.0, rhoA=1.0, EI_z=1.0, bend_y=1)
+BRISTLES = (sf.LuGre(1.0, 5.0),)
+TOUCH = sf.Contact("c", ("a", None), ("world", None), points=((0, 0, 0), (1, 0, 0)), stiffness=1e3, radius=0.1)
+
+
+@pytest.mark.parametrize(
+    ("stated", "said"),
+    [
+        (sf.System("s", [BEAM, sf.RigidBody("a", sf.Joint("bm.tip", "revolute", "bm"), SOLID)]), "two joints called"),
+        (
+            sf.System(
+                "s", [body("a", "world", "free")], connections=[TOUCH, replace(TOUCH, name="c.0", points=((0, 0, 0),))]
+            ),
+            "two balls called 'c.0'",
+        ),
+        (
+            sf.System(
+                "s",
+                [body("a", "world", "free")],
+                constraints=[sf.Closure("c", ("a", None), ("world", None), ("x",), ()), sf.Coupling("c.x", "q_a.py")],
+            ),
+            "two conditions called 'c.x'",
+        ),
+        (
+            sf.System(
+                "s",
+                [body("a", "world", elements=BRISTLES), sf.RigidBody("b", sf.Joint("q_a.bristle", "revolute"), SOLID)],
+            ),
+            "'q_a.bristle' is also a state",
+        ),
+    ],
+)
+def test_names_made_of_stated_ones_are_nobody_elses(stated: sf.System, said: str) -> None:
+    """A formula of coordinate 'q_a.bristle' had the state of the bristles of q_a; others were listed twice."""
+    with pytest.raises(sf.DescriptionError, match=said):
+        build_tree(stated)
+
+
+def test_conditions_know_their_constraints_by_more_than_a_dot() -> None:
+    """Constraints 'hand', 'hand.left' and 'hand.right' were one to blocks and to what asks how closures face."""
+    couplings = [sf.Coupling("hand.left", "q_b"), sf.Coupling("hand.right", "2*q_b")]
+    weld = sf.Closure("hand", ("a", None), ("world", None), rotations=("x", "y", "z"))
+    stated = sf.System("s", [body("a", "world", "free"), body("b", "world")], constraints=[*couplings, weld])
+    record = sf.compile(stated, sf.Options(backend="interpreter")).record
+    assert record.constraint_owners == (*["hand"] * 6, "hand.left", "hand.right")
+    assert record.facing_conditions == (0, 0, 0)

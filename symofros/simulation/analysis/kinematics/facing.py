@@ -51,7 +51,7 @@ def facings(model: Model, q: ArrayLike, u: ArrayLike | None = None, par: ArrayLi
             R_B = R_B @ quaternion_matrix(normalized(held[..., list(switch.rotation)]))
         cosines = (R_A * R_B).sum(axis=-2)[..., list(closure.parallel)].min(axis=-1)  # a_k . b_k, the axes are columns.
         if switch is not None:  # One that is released has rows of zeros, and faces anywhere.
-            rows = [i for i, name in enumerate(model.names.constraints) if name.rpartition(".")[0] == closure.name]
+            rows = [i for i, owner in enumerate(model.record.constraint_owners) if owner == closure.name]
             G = model.constraint_jacobian(q, u=u, par=par)[..., rows, :]
             cosines = np.where(G.any(axis=(-2, -1)), cosines, 1.0)
         faced.append(Facing(closure.name, cosines))

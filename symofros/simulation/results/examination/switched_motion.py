@@ -14,8 +14,9 @@ from symofros.simulation.stepping.windows import WHOLE, Window
 # Refinement by which steps are four times as long. Tolerances are divided, or multiplied, by so much, down to the
 # tightest; from the loosest on they are not held against wider ones.
 COARSER, _TIGHTER, _TIGHTEST, _LOOSEST = -2, 100.0, 1e-13, 1e-4
-# Orders of convergence that are lower than the method's by more are stated, where errors are below what shows any.
-_LOST, _SEEN = 0.5, 0.5
+# Orders of convergence that are lower than the method's by more are stated, and give the error, where changes are below
+# what shows any; from this share of the tolerance on, as half the step changes half of what a run of order one errs by.
+_LOST, _SEEN, _DOUBTED, _LEAST = 0.5, 0.5, 0.5, 1.0
 
 
 class SwitchedMotion(HeldRun):
@@ -53,14 +54,15 @@ class SwitchedMotion(HeldRun):
         """Whether it is held against coarser steps first."""
         return not self.short if self.h else self.rtol < _LOOSEST
 
-    def error(self, share: float, refinements: int) -> float:
-        """Error of the run, by its change where steps are refined so many times (18h)."""
-        return share * self.own_share(refinements)
+    def error(self, share: float, refinements: int, order: float = math.nan) -> float:
+        """Error of the run, by its change where steps are refined so many times (18h), by the order if that is seen."""
+        return share * self.own_share(refinements, order)
 
-    def own_share(self, refinements: int) -> float:
+    def own_share(self, refinements: int, order: float = math.nan) -> float:
         """Share of a difference from other steps, refined or coarser, that is the error of its own."""
         if self.h:
-            return 1.0 / abs(1.0 - 2.0 ** (-self.method_order * refinements))
+            order = max(order, _LEAST) if self.loses(order) else self.method_order
+            return 1.0 / abs(1.0 - 2.0 ** (-order * refinements))
         return 1.0 if refinements > 0 else 1.0 / _TIGHTER
 
     def order(self) -> float:
@@ -70,6 +72,10 @@ class SwitchedMotion(HeldRun):
             return math.nan
         first, second = self.change(run, half, "whole")[0], self.change(half, quarter, "whole")[0]
         return math.log2(first / second) if first > 0.0 and second > 0.0 else math.nan
+
+    def loses(self, order: float) -> bool:
+        """Whether an order that is seen is lower than that of the method."""
+        return order < self.method_order - _LOST
 
     def agrees(self) -> bool:
         """Whether a run by coarser steps is the same within the tolerance."""
@@ -91,20 +97,14 @@ def whole_run_note(run: SwitchedMotion) -> tuple[str, int]:
     worst = run.changed(run.window, "whole")
     if not worst.arrived:
         return other_end_note(run, worst, f" over {run.switched}", stepping, cure), 1
-    error = run.error(worst.size, worst.refinements)
+    order = run.order() if run.h and _DOUBTED * run.tolerance < worst.size < _SEEN else math.nan
+    error = run.error(worst.size, worst.refinements, order)
     if not error > run.tolerance:
         return "", 1
     of = f" of '{worst.name}'" if worst.name else ""
+    lost = f", with the order {max(order, 0.0):.1f} in place of {run.method_order}" if run.loses(order) else ""
     about = f", so that it errs by {'about ' * (error < 1.0)}{percent(error)}" if run.h else ""
     return (
         f"{stepping} do not determine the motion{of} over {run.switched}: {finer_words(run, worst)}"
-        f" changes it by {percent(worst.size)}{about}{_lost_order(run, error)}; {cure}"
+        f" changes it by {percent(worst.size)}{about}{lost}; {cure}"
     ), 1
-
-
-def _lost_order(run: SwitchedMotion, error: float) -> str:
-    """The order of convergence in words, where it is seen and lower than that of the method."""
-    order = run.order() if run.h and error < _SEEN else math.nan
-    if not order < run.method_order - _LOST:
-        return ""
-    return f", with the order {max(order, 0.0):.1f} in place of {run.method_order}"
