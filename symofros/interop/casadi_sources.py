@@ -126,7 +126,7 @@ class Sources:
         return np.asarray(pattern | pattern.T, dtype=np.bool_)
 
     def _coordinates_of_speeds(self) -> Pattern:
-        """Which coordinates (nq) a derivative by the motion of each speed (nv) goes to."""
+        """Coordinates (nq) that receive a derivative by the motion of each speed (nv)."""
         last = self._segments[-1] if self._segments else None
         pattern = np.zeros((last.v + last.speeds, last.q + last.size) if last else (0, 0), dtype=bool)
         for segment in self._segments:

@@ -21,7 +21,7 @@ _HIDDEN = "<style>.mantine-Notifications-root, .mantine-Notification-root {displ
 
 
 def shot(page: Page) -> np.ndarray:
-    """What the canvas shows, the page's own or the 3-D pane's, without what floats over it (height, width, 3)."""
+    """Picture of the canvas, the page's own or the 3-D pane's, without overlays (height, width, 3)."""
     framed = page.locator("iframe.view").count() > 0
     inside = page.frame_locator("iframe.view") if framed else page
     inside.locator("body").evaluate("(body, style) => body.insertAdjacentHTML('beforeend', style)", _HIDDEN)

@@ -81,7 +81,7 @@ class Budget:
 
     @property
     def over(self) -> bool:
-        """Whether nothing is left."""
+        """Whether no budget is left."""
         return self.spent >= self.seconds or self.tried >= self.examples
 
 

@@ -118,7 +118,7 @@ def _fatal(*arguments: Any) -> None:
 
 
 def _tokenize(text: str, sep: str = ",; ", skip_empty: bool = True) -> list[str]:
-    """xacro's: pieces of a text between any of some characters."""
+    """Pieces of a text between any of some characters, as xacro splits it."""
     if not isinstance(text, str) or not isinstance(sep, str) or not sep:
         raise Refusal("tokenize takes a text and the characters that separate its pieces")
     return [piece for piece in re.split(f"[{re.escape(sep)}]", text) if piece or not skip_empty]

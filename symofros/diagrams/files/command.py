@@ -60,7 +60,7 @@ class RunRequest:
 
 
 def run_diagram(diagram: Diagram, request: RunRequest, progress: bool) -> DiagramRun:
-    """Run a diagram as wished.
+    """Run a diagram as the command line asks.
 
     Raises:
         SymofrosError: The diagram, a setting, a file or a signal's name is wrong; nothing has run then.

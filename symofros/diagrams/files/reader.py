@@ -127,7 +127,7 @@ class _Shared(Permissions):
 
 
 class _Reader(BlockReader):
-    """One file of a diagram."""
+    """Reader of one file of a diagram."""
 
     def __init__(self, shared: _Shared, path: Path, shown: str, here: tuple[Path, ...]) -> None:
         super().__init__(shown, shared.problems, path.parent, shared)

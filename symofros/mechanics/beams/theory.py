@@ -160,7 +160,7 @@ class BeamEquations(ABC):
 
 
 class Interpolated(NamedTuple):
-    """What a theory knows at some stations alone, and takes between them by interpolation.
+    """Properties that a theory evaluates at some stations, and interpolates between them.
 
     Attributes:
         properties: Label and values of what is interpolated.

@@ -227,7 +227,7 @@ class HandBatch:
         self.single, self.met = self._parts[0].single, dict[int, tuple[Met, ...]]()
 
     def reset(self, chosen: npt.NDArray[np.intp], t: Array, q: Array, v: Array, par: Array | None) -> None:
-        """Motions of these numbers begin anew at the next step, their inputs those of the description."""
+        """Restart the motions of these numbers at the next step, their inputs those of the description."""
         self.t0[chosen], self.q0[chosen], self.v0[chosen] = t, q, v
         results = self.results
         results.t_last[chosen], results.q_last[chosen], results.v_last[chosen] = t, q, v

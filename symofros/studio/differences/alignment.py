@@ -57,7 +57,7 @@ class Close:
         return self.points(a.p, b.p) and self.directions(a.R, b.R)
 
     def inertias(self, a: Array, b: Array, mass: float) -> bool:
-        """Moments of inertia."""
+        """Whether moments of inertia agree."""
         slack = self.tolerance * max(np.abs(a).max(), np.abs(b).max()) + _STEINER * abs(mass) * self.size**2
         return bool(np.abs(a - b).max() <= slack)
 

@@ -169,7 +169,7 @@ def test_constraints_are_compared_in_the_coordinates_of_the_first() -> None:
     assert not found.same and found.differences[0].changes == ("constraints",)
 
 
-def test_the_command(tmp_path: Path) -> None:
+def test_the_command_compares_two_files(tmp_path: Path) -> None:
     def ran(*words: object) -> tuple[int, str]:
         done = CliRunner().invoke(app, ["diff", *map(str, words)])
         return done.exit_code, done.output

@@ -65,7 +65,7 @@ def _pair(kind: str) -> Tree:
 
 
 def _sensed(name: str, kind: str, ends: tuple[str, str], *lengths: int) -> Tree:
-    """Branches that are bound, each link with a sensor: what holds it, constraints bear a part of."""
+    """Bound branches with a sensor on each link; constraints bear a part of the wrenches that hold it."""
     tree = _bound(name, kind, ends, *lengths)
     draw = np.random.default_rng(43)
     return replace(tree, sensors=tuple(_end(draw, link.name) for link in tree.links))

@@ -8,7 +8,7 @@ from ...interface import Array, Constraint, Joint, Tendon, Tree
 
 
 def plain(values: object) -> str:
-    """An array."""
+    """Source text of an array."""
     return f"np.array({np.asarray(values, dtype=float).tolist()!r})"
 
 
