@@ -88,7 +88,7 @@ def compose(data: Data) -> Report:
         "Which engine is wrong where",
         f"{counted(len(data['engines']), 'engine')}, {counted(len(data['models']), 'tree')}, "
         f"{counted(len(data['functions']), 'function')}: {tally['right']} answers are right, {red} wrong, imprecise "
-        f"or failed; {counted(len(found.groups), 'cause')} explain these, and {scripts} prove them"
+        f"or failed, by {counted(len(found.groups), 'cause')}; {scripts} prove them"
         f"{_shortcomings(data, raising)}.",
         all_proven and sound and not data.get("changed"),
         (_CAUSES, *_stale(found), _TEXT),

@@ -61,7 +61,7 @@ def test_unexplained_cells_and_idle_causes_are_listed(data: dict[str, Any]) -> N
     engine["refusals"] = "refuses 9 of 9 cells in its own words, above the bound of 25%"
     toy = data | {"engines": [engine], "cells": {"toy": row | aside}, "corrected": {}, "identities": {}, "proofs": []}
     report = compose(toy)
-    assert "2 red, behind them 1 cause," in report.summary
+    assert "2 wrong, imprecise or failed, by 1 cause;" in report.summary
     assert "causes, 1 of them not yet found" in {fact.label for fact in report.facts}
     for text in (html.page(report), markdown.page(report, Provenance.of({}), "")):
         assert "Cause not yet found:" in text and "no balls (manual, p. 3)." in text
