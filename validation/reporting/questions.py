@@ -67,10 +67,10 @@ def composing(title: str, theory: str) -> Compose:
     return compose
 
 
-def answers_in_short(asked: Iterable[tuple[str, str, str]]) -> tuple[Table, ...]:
-    """Of anchor, question and answer, a table of each question with the first sentence of its answer."""
-    rows = [(f"[{question}](#{anchor})", _SENTENCE.split(answer)[0]) for anchor, question, answer in asked]
-    return (Table.of("question | answer in short", rows),) if rows else ()
+def answers_in_short(asked: Iterable[tuple[str, str, str]], head: str = "answer in short") -> tuple[Table, ...]:
+    """Of anchors, questions and texts, a table of each question with the first sentence of its text, under `head`."""
+    rows = [(f"[{question}](#{anchor})", _SENTENCE.split(text)[0]) for anchor, question, text in asked]
+    return (Table.of(f"question | {head}", rows),) if rows else ()
 
 
 def _section(name: str, study: Study) -> Section:

@@ -52,7 +52,9 @@ def compose(data: Data) -> Report:
         (INTRO,),
         tuple(_section(name, study, findings[name], data["quick"]) for name, study in studies.items()),
         facts=(Fact(str(len(studies)), "studies"), Fact(str(runs), "runs")),
-        decisions=answers_in_short((name, STUDIES[name].question, study["verdict"]) for name, study in studies.items()),
+        decisions=answers_in_short(
+            ((name, STUDIES[name].question, STUDIES[name].advice) for name in studies), "what to use"
+        ),
     )
     return judged(draft, data, findings, "study", "claim")
 

@@ -10,6 +10,7 @@ import pytest
 
 from validation.dashboard.catalogue import TOPICS
 from validation.reporting.command import code
+from validation.reporting.record import Table
 
 REPORTS = Path(__file__).parents[3] / "reports"
 
@@ -55,3 +56,10 @@ def test_an_interrupt_comes_before_a_verdict() -> None:
     data = stored("stability") | {"ok": False, "unfinished": ["energy"]}
     report = TOPICS["stability"].compose(data)
     assert code(report) == 130 and "Interrupted: energy not done." in report.summary
+
+
+def test_the_first_screen_of_the_stability_atlas_says_what_to_use() -> None:
+    data = stored("stability")
+    (table,) = TOPICS["stability"].compose(data).decisions
+    assert isinstance(table, Table) and len(table.rows) == len(data["studies"])
+    assert ("[How do long loops drift without stabilisation?](#long_loops)", "projection.") in table.rows

@@ -151,7 +151,6 @@ def test_a_new_user_builds_plays_and_exports_a_controlled_arm(
         # Where the law holds it, to a step of the slider.
         expect(pose.get_by_label("q1 [rad]")).to_have_value(re.compile(r"^0\.(59|60|61)"))
     changed(page, still)
-    page.frame_locator("iframe.view").locator(".mantine-Notification-closeButton").first.click()  # No graphics card.
     picture("new-user-played")
 
     with action("export C"):
