@@ -41,6 +41,7 @@ from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.record import ModelRecord
 
 PROGRAM_HEADERS = (*INTEGRATOR_HEADERS, "diagrams/symofros_diagram.h", "diagrams/symofros_program.h")
+DIAGRAM_LOOP = "diagrams/symofros_diagram.c"
 # Of the self-test, whose signals are those of the same run from Python.
 _TOLERANCE = "1e-9"
 
@@ -97,9 +98,12 @@ def write_diagram(
     files["main.c"] = Template(native_text("exports/diagram_main.c.in")).substitute(fields)
     files["README.md"] = Template(native_text("exports/diagram_README.md.in")).substitute(fields)
     files["CMakeLists.txt"] = Template(native_text("exports/diagram_CMakeLists.txt.in")).substitute(fields)
-    files |= header_files(*PROGRAM_HEADERS)
-    files["symofros_diagram.c"] = amalgamated("diagrams/symofros_diagram.c")
-    return write_folder(folder, "c", name, files, generator, program.notes)
+    return write_folder(folder, "c", name, files | loop_files(), generator, program.notes)
+
+
+def loop_files() -> dict[str, str]:
+    """File name -> text of what every program builds on: the loop and its headers."""
+    return {**header_files(*PROGRAM_HEADERS), "symofros_diagram.c": amalgamated(DIAGRAM_LOOP)}
 
 
 @dataclass(frozen=True)
@@ -112,6 +116,7 @@ class DiagramProgram:
         interface: Inputs, outputs, parameters.
         first: How it begins.
         files: File name -> text, of what is generated.
+        period: Base period of what is sampled, or else the step of the parts [s].
     """
 
     name: str
@@ -119,6 +124,12 @@ class DiagramProgram:
     interface: Interface
     first: FirstMotion
     files: dict[str, str]
+    period: float
+
+    @property
+    def c_files(self) -> list[str]:
+        """Names of the generated files that are compiled."""
+        return [file for file in self.files if file.endswith(".c")]
 
     @property
     def notes(self) -> tuple[str, ...]:
@@ -146,7 +157,8 @@ def diagram_program(
         instants, record_of(resolved, None), generator, c_name=f"{name}_instants"
     )
     files[f"{name}_program.c"] = _program(resolved, name, interface, reads_accelerations(instants), generator)
-    return DiagramProgram(name, resolved, interface, first, files)
+    period = float(resolved.schedule.base) if resolved.schedule.instants else stepping.dt
+    return DiagramProgram(name, resolved, interface, first, files, period)
 
 
 def _refuse(resolved: Resolved, stepping: Stepping) -> None:

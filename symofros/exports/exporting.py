@@ -21,9 +21,9 @@ from symofros.diagrams.diagram import Diagram
 from symofros.errors import DescriptionError, ExportError, Problem, UnknownNameError, did_you_mean
 from symofros.exports.c.c_package import write_c_package
 from symofros.exports.c.event_plan import event_plan
-from symofros.exports.c.mex import write_mex
+from symofros.exports.c.mex import write_diagram_mex, write_mex
 from symofros.exports.c.reference import POINTS, checks
-from symofros.exports.c.sfunction import write_sfunction
+from symofros.exports.c.sfunction import write_diagram_sfunction, write_sfunction
 from symofros.exports.cuda.cuda_package import write_cuda_package
 from symofros.exports.diagram import write_diagram
 from symofros.exports.fmi.fmu import write_diagram_fmu2, write_diagram_fmu3, write_fmu2, write_fmu3
@@ -59,6 +59,8 @@ _COMPILED: dict[str, Callable[[Material, Path], Exported]] = {
 }
 _DIAGRAMS: dict[str, Callable[[Diagram, Path, Sequence[str] | None, Stepping, str], Exported]] = {
     "c": write_diagram,
+    "mex": write_diagram_mex,
+    "sfunction": write_diagram_sfunction,
     "fmu2": write_diagram_fmu2,
     "fmu3": write_diagram_fmu3,
 }
@@ -101,7 +103,7 @@ def export(
 
     Args:
         model: A system, or the path of its description; or a diagram, which becomes a program of its own
-            ("c", "fmu2", "fmu3"): its inlets are inputs, its outlets outputs.
+            ("c", "mex", "sfunction", "fmu2", "fmu3"): its inlets are inputs, its outlets outputs.
         target: "c" (a package that builds by CMake, tests itself and simulates in real time), "cuda" (kernels, one
             thread a state), "mex" (Matlab, Octave), "sfunction" (Simulink), "fmu2", "fmu3" (FMI, Model Exchange and
             Co-Simulation), "wasm" (WebAssembly with an ES module and a page that simulates), "urdf" or "mjcf" (what
@@ -202,7 +204,7 @@ def _export_diagram(
             Problem(
                 f"diagram '{diagram.name}': no target '{target}'",
                 target,
-                f"a diagram becomes a C program or an FMU: {', '.join(_DIAGRAMS)}",
+                f"a diagram becomes a program, a function of Matlab, a block or an FMU: {', '.join(_DIAGRAMS)}",
                 "use target 'c', or export its mechanisms alone",
             )
         )

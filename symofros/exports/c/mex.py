@@ -1,16 +1,19 @@
-"""A function of Matlab and Octave: the calls of the SYMOFROS paper's section 8, and more flags of the kind."""
+"""Functions of Matlab and Octave: of a model the calls of the SYMOFROS paper's section 8, of a diagram its steps."""
 
 from __future__ import annotations
 
+from collections.abc import Sequence
 from pathlib import Path
 
 from symofros.base.c_text import c_string, comment
+from symofros.diagrams.diagram import Diagram
 from symofros.errors import ExportError, Problem
 from symofros.exports.c.c_package import model_files
-from symofros.exports.c.unity import unity
+from symofros.exports.c.unity import MODEL_LOOP, unity
+from symofros.exports.diagram import DIAGRAM_LOOP, diagram_program, loop_files
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.functions import states_note
-from symofros.exports.material import Material
+from symofros.exports.material import Material, Stepping
 from symofros.native import native_text
 
 _HELP = """{name}  {title}: {nq} coordinates, {nv} speeds, {nu} inputs, {npar} parameters, {nc} constraints.
@@ -30,6 +33,19 @@ X = [q; v]. U, Parameters and t may be left out or empty: defaults, and t = 0. S
 V, J, dJ: linear part first, in world axes. An empty {name}() prints this text.{states}
 """
 
+_DIAGRAM_HELP = """{name}  {title}: a diagram of {inputs} inputs, {outputs} outputs, {parameters} parameters.
+
+[Inputs, Outputs, Parameters, Info] = {name}(0)       names, units, first values; base period
+y = {name}(1, U, Parameters)          begins a motion: outputs at t = 0
+[y, t] = {name}(2, t, U)              moves to time t: outputs there
+[T, Y] = {name}(3, T, U, Parameters)  a whole motion: Y has a row for each time
+
+A call moves mechanisms to its time under the inputs of the call before; what is sampled at that time
+reads the inputs of the call. U of flag 3 is a column that holds, or has a row for each time. U and
+Parameters may be left out or empty: first values; U of flag 2: as it is. An event that ends the motion
+ends T, or gives a t before that asked for. An empty {name}() prints this text.
+"""
+
 # Words of the languages, and what the script below calls: no function may hide it.
 _TAKEN = frozenset(
     "classdef spmd until unwind_protect"
@@ -47,12 +63,12 @@ if any(kind == [2 3 5 6]) && ~strncmp(place, here, numel(here))
     'export the model by another name, such as my_{name}']);
 end
 if exist('OCTAVE_VERSION', 'builtin')
-  [output, status] = mkoctfile('--mex', '{name}_mex.c', '-o', ['{name}.' mexext()]);
+  [output, status] = mkoctfile('--mex', {sources}, '-o', ['{name}.' mexext()]);
   if status ~= 0
     error('symofros:{name}:build', '%s', output);
   end
 else
-  mex('-output', '{name}', '{name}_mex.c');
+  mex('-output', '{name}', {sources});
 end
 clear('{name}');
 rehash();
@@ -66,9 +82,7 @@ def write_mex(material: Material, folder: Path) -> Exported:
         ExportError: The folder is not ours, or Matlab has another use for the name.
     """
     name, record = material.c_name, material.record
-    if name in _TAKEN:
-        rule, remedy = "the model becomes a function of its name, which hides no other", f"for example name='my_{name}'"
-        raise ExportError(Problem("mex: the name is taken in Matlab and Octave", name, rule, remedy))
+    _refuse_taken(name)
     text = _HELP.format(
         name=name,
         title=comment(record.name),
@@ -79,41 +93,102 @@ def write_mex(material: Material, folder: Path) -> Exported:
         nc=record.nc,
         states="".join(f"\n{note}." for note in states_note(record)),
     )
-    shown = "\n".join(f"    {c_string(line)} {c_string(chr(10))}" for line in text.splitlines())
     beams = [body for body in material.system.beams if body.modes]
     rows = [
         f"    {{{c_string(beam.name)}, {record.q_names.index(beam.coordinates[0])}, {beam.modes}}}" for beam in beams
     ]
     listed = ",\n".join(rows) or "    {NULL, 0, 0}"
+    own = [
+        f"#define SYM_MEX_PLANT {name}_plant",
+        f"#define SYM_MEX_BEAMS {len(beams)}",
+        "static const struct {\n    const char *name;\n    int32_t first, count;\n} "
+        f"sym_mex_beams[] = {{\n{listed}\n}};",
+    ]
+    files = _function(name, record.name, text, own, material.generator) | model_files(material)
+    return write_folder(folder, "mex", name, files, material.generator, material.notes)
+
+
+def write_diagram_mex(
+    diagram: Diagram, folder: Path, outputs: Sequence[str] | None, stepping: Stepping, generator: str
+) -> Exported:
+    """The same files of a diagram; arguments as of `write_diagram`.
+
+    Raises:
+        ExportError: The diagram calls Python, the folder is not ours, or Matlab has another use for the name.
+    """
+    program = diagram_program(diagram, outputs, stepping, generator)
+    name, shown = program.name, program.interface
+    _refuse_taken(name)
+    text = _DIAGRAM_HELP.format(
+        name=name,
+        title=comment(diagram.name),
+        inputs=sum(item.width for item in shown.inputs),
+        outputs=sum(item.width for item in shown.outputs),
+        parameters=sum(item.width for item in shown.parameters),
+    )
+    own = [
+        f'#include "{name}.h"',
+        f"#define SYM_MEX_PROGRAM {name}_program",
+        f"#define SYM_MEX_PERIOD {program.period!r}",
+    ]
+    files = _function(name, diagram.name, text, own, generator, program.c_files) | program.files | loop_files()
+    return write_folder(folder, "mex", name, files, generator, program.notes)
+
+
+def _refuse_taken(name: str) -> None:
+    """Refuse names of other functions.
+
+    Raises:
+        ExportError: Matlab has another use for the name.
+    """
+    if name in _TAKEN:
+        rule, remedy = (
+            "what is exported is a function of its name, which hides no other",
+            f"for example name='my_{name}'",
+        )
+        raise ExportError(Problem("mex: the name is taken in Matlab and Octave", name, rule, remedy))
+
+
+def _function(
+    name: str, title: str, text: str, own: Sequence[str], generator: str, compiled: Sequence[str] | None = None
+) -> dict[str, str]:
+    """File name -> text of a function, its help and its build script.
+
+    Args:
+        name: Name of the function.
+        title: Name of the model or the diagram.
+        text: Its help.
+        own: Lines that say what it wraps.
+        generator: Name and version.
+        compiled: Of a diagram, names of its files that are compiled; a model is included by the function's file.
+    """
+    shown = "\n".join(f"    {c_string(line)} {c_string(chr(10))}" for line in text.splitlines())
+    body = "symofros_mex.c" if compiled is None else "symofros_mex_program.c"
     glue = unity(
         name,
-        f"{comment(record.name)} as a function of Matlab or Octave, by {material.generator}.",
-        [
-            f"#define SYM_MEX_PLANT {name}_plant",
-            f"#define SYM_MEX_NAME {c_string(name)}",
-            f"#define SYM_MEX_BEAMS {len(beams)}",
-            "static const struct {\n    const char *name;\n    int32_t first, count;\n} "
-            f"sym_mex_beams[] = {{\n{listed}\n}};",
-            f"static const char *const sym_mex_help =\n{shown};",
-        ],
+        f"{comment(title)} as a function of Matlab or Octave, by {generator}.",
+        [f"#define SYM_MEX_NAME {c_string(name)}", *own, f"static const char *const sym_mex_help =\n{shown};"],
         [
             "#if defined(__GNUC__) && !defined(_WIN32)",
             '#define SYM_MEX_EXPORT __attribute__((visibility("default")))',
             "#else",
             "#define SYM_MEX_EXPORT",
             "#endif",
-            '#include "symofros_mex.c"',
+            f'#include "{body}"',
         ],
         ['"mex.h"'],
+        linked=compiled is not None,
+        included=() if compiled is None else ("symofros_diagram.c",),
+        loop=MODEL_LOOP if compiled is None else DIAGRAM_LOOP,
     )
+    sources = ", ".join(f"'{file}'" for file in (f"{name}_mex.c", *(compiled or ())))
     commented = "".join(f"% {line}".rstrip() + "\n" for line in text.splitlines())
-    files = {
+    return {
         f"{name}_mex.c": glue,
-        "symofros_mex.c": native_text("exports/symofros_mex.c"),
-        f"build_{name}.m": _BUILD.format(name=name),
+        **{file: native_text(f"exports/{file}") for file in (body, "symofros_mex_arrays.h")},
+        f"build_{name}.m": _BUILD.format(name=name, sources=sources),
         f"{name}.m": commented + _UNBUILT.format(name=name),
     }
-    return write_folder(folder, "mex", name, files | model_files(material), material.generator, material.notes)
 
 
 _UNBUILT = """function varargout = {name}(varargin)

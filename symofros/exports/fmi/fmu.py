@@ -21,17 +21,16 @@ from symofros.exports.c.c_package import model_files
 from symofros.exports.c.compiling import shared_library
 from symofros.exports.c.event_plan import refuse_ends
 from symofros.exports.c.unity import MODEL_LOOP, unity
-from symofros.exports.diagram import PROGRAM_HEADERS, DiagramProgram, diagram_program
+from symofros.exports.diagram import DIAGRAM_LOOP, DiagramProgram, diagram_program, loop_files
 from symofros.exports.fmi.fmu_description import Unit, build_xml, description_xml
 from symofros.exports.fmi.fmu_variables import Variable, diagram_variables, variables
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.material import Material, Stepping
-from symofros.native import amalgamated, header_files, native_text
+from symofros.native import native_text
 
 _MACHINES = {"x86_64": "x86_64", "amd64": "x86_64", "aarch64": "aarch64", "arm64": "aarch64"}
 _SYSTEMS = {"linux": ("linux", ".so"), "darwin": ("darwin", ".dylib"), "win32": ("windows", ".dll")}
 _OLD_NAMES = {("x86_64", "linux"): "linux64", ("x86_64", "darwin"): "darwin64", ("x86_64", "windows"): "win64"}
-_DIAGRAM_LOOP = "diagrams/symofros_diagram.c"
 # Included by the files of both versions' interfaces, before and after the standard's header.
 _BOTH = "symofros_fmi.h"
 _COMMON = "symofros_fmi_shared.h"
@@ -105,22 +104,20 @@ def _write_diagram(program: DiagramProgram, folder: Path, stepping: Stepping, ge
     name, title, shown = program.name, program.resolved.wired.name, program.interface
     for switching in map(program.resolved.switching, program.resolved.layout.parts):
         refuse_ends(() if switching is None else switching.events)
-    sources = {**program.files, **header_files(*PROGRAM_HEADERS)}
-    sources["symofros_diagram.c"] = amalgamated(_DIAGRAM_LOOP)
+    sources = program.files | loop_files()
     token = _token([*sources.values()], version)
     own = [f'#include "{name}.h"', f"#define SYM_FMU_PROGRAM {name}_program", '#include "symofros_fmu_program.h"']
     main = f"{name}_fmi{version}.c"
     loop = ["symofros_diagram.c"]
-    sources[main] = _glue(name, title, generator, own, version, token, loop, _DIAGRAM_LOOP)
-    schedule = program.resolved.schedule
+    sources[main] = _glue(name, title, generator, own, version, token, loop, DIAGRAM_LOOP)
     unit = Unit(
         title,
         name,
         f"a diagram: {len(shown.inputs)} inputs, {len(shown.outputs)} outputs, {len(shown.parameters)} parameters",
         generator,
         stepping,
-        float(schedule.base) if schedule.instants else stepping.dt,
-        (main, *(file for file in program.files if file.endswith(".c"))),
+        program.period,
+        (main, *program.c_files),
         exchanged=False,
         serialised=False,
     )

@@ -327,7 +327,7 @@ SYM_EXPORT int32_t sym_diagram_advance(sym_diagram *d, int64_t instants) {
     for (i = 0; i < instants; ++i) {
         const double due = d->n_instants > 0 ? sym_instant_time(d, d->cycle, d->next_instant) : HUGE_VAL;
         const double slack = 1e-9 * d->base_numerator / d->base_denominator; /* of rounding in t_end */
-        const int32_t last = due > d->t_end + slack;
+        const int32_t last = due > d->t_end + (d->before_end ? -slack : slack);
         int32_t status;
         if (d->finished) return SYM_FINISHED;
         if (d->capacity - d->n_records < SYM_RECORDS_PER_INSTANT) return SYM_RECORDS_FULL;

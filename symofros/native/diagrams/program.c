@@ -34,6 +34,11 @@ static void sym_program_bind_tasks(sym_program_instance *instance, sym_arena *ar
     if (instance->begin_task.call.function != NULL) instance->diagram.begin_task = &instance->begin_task;
 }
 
+/* Time and step of a part as at the start. */
+static void sym_program_rewind_part(sym_instance *part) {
+    part->run.t = part->run.t0 = part->run.t_end = 0.0, part->run.h = part->plant->h;
+}
+
 /* One part: its instance, which reads the diagram's inputs. Its events are handled by the diagram. */
 static void sym_program_allocate_part(sym_program_instance *instance, sym_arena *arena, int32_t i) {
     const sym_program *p = instance->program;
@@ -47,8 +52,9 @@ static void sym_program_allocate_part(sym_program_instance *instance, sym_arena 
     instance->diagram.parts[i] = &part->run;
     part->system.u_constant = instance->diagram.u;
     part->system.n_signals = p->n_signals, part->system.signals = p->signals;
-    part->run.project = part->project, part->run.h = plant->h, part->run.acts = 0;
+    part->run.project = part->project, part->run.acts = 0;
     part->actions.at_once = part->run.adaptive ? 0.0 : SYM_AT_ONCE * plant->h;
+    sym_program_rewind_part(part);
 }
 
 /* Lay out every array and struct. */
@@ -140,6 +146,7 @@ static void sym_program_restore(sym_program_instance *instance) {
     for (i = 0; i < p->n_parts; ++i) {
         const int32_t checked = instance->parts[i]->check_parameters, project = instance->parts[i]->project;
         sym_instance_reset(instance->parts[i]);
+        sym_program_rewind_part(instance->parts[i]);
         instance->parts[i]->check_parameters = checked, instance->parts[i]->project = project;
     }
 }
@@ -202,9 +209,11 @@ static double sym_program_find_stops(sym_program_instance *instance, double t) {
     return known;
 }
 
-SYM_EXPORT int32_t sym_program_advance(sym_program_instance *instance, double t) {
+/* Integrate to time t, instants of that time included or not. Returns SYM_FINISHED or another status. */
+static int32_t sym_program_integrate(sym_program_instance *instance, double t, int32_t before_end) {
     sym_diagram *d = &instance->diagram;
     int32_t i, status = SYM_FINISHED;
+    d->before_end = before_end;
     for (i = 0; i < instance->program->n_parts; ++i) {
         if (instance->parts[i]->refused >= 0) return SYM_PARAMETERS_REFUSED;
         if (instance->program->n_inputs > 0) instance->parts[i]->run.slope_valid = 0; /* they may have changed */
@@ -219,6 +228,15 @@ SYM_EXPORT int32_t sym_program_advance(sym_program_instance *instance, double t)
         } while (status == SYM_RUNNING || status == SYM_RECORDS_FULL);
         d->n_records = 0;
     } while (status == SYM_FINISHED && d->t_end < t);
+    return status;
+}
+
+SYM_EXPORT int32_t sym_program_approach(sym_program_instance *instance, double t) {
+    return sym_program_integrate(instance, t, 1);
+}
+
+SYM_EXPORT int32_t sym_program_advance(sym_program_instance *instance, double t) {
+    int32_t status = sym_program_integrate(instance, t, 0);
     if (status != SYM_FINISHED) return status;
     status = sym_program_evaluate(instance);
     return status == 0 ? SYM_FINISHED : status;

@@ -65,6 +65,7 @@ typedef struct sym_diagram {
     /* Advances the parts by several threads; NULL: one after the other (thread_pool.c). */
     int32_t (*advance_parallel)(struct sym_diagram *diagram, double t);
     struct sym_thread_pool *pool;
+    int32_t before_end; /* whether instants of t_end are left to the next call */
 } sym_diagram;
 
 /* Point a call's inputs at the diagram's point. Returns 0 where one is unknown. */

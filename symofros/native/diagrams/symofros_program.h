@@ -70,6 +70,10 @@ int32_t sym_program_prepare(sym_program_instance *instance);
  * change fast. Events of mechanisms act on the way; those of the call are the rows of the run of their part, as
  * sym_instance_advance has them. Returns SYM_FINISHED, SYM_TERMINAL_EVENT where one ends the motion, or a status below zero. */
 int32_t sym_program_advance(sym_program_instance *instance, double t);
+/* The same, but what is sampled at t waits for the next call, and `signals` are left: inputs that are set between
+ * sym_program_approach(instance, t) and sym_program_advance(instance, t) are read by blocks sampled at t, and held from there
+ * on, while the mechanisms have moved to t under those before. */
+int32_t sym_program_approach(sym_program_instance *instance, double t);
 /* signals <- outputs at the present time, of the inputs as they are now, while what is sampled holds. Returns 0 or a status
  * below zero. */
 int32_t sym_program_evaluate(sym_program_instance *instance);

@@ -1,4 +1,4 @@
-/* mex.h for tests without Matlab or Octave: arrays of doubles, names and messages as far as symofros_mex.c asks for them. */
+/* mex.h for tests without Matlab or Octave: arrays of doubles, names and messages as far as functions of models and diagrams ask for them. */
 #include <stddef.h>
 #include <stdio.h>
 #include <stdlib.h>
@@ -18,11 +18,12 @@ static mxArray *mxCreateString(const char *text) { mxArray *made = mxCreateDoubl
 static mxArray *mxCreateCellMatrix(mwSize m, mwSize n) { return mxCreateDoubleMatrix(m, n, mxREAL); }
 static mxArray *mxCreateStructMatrix(mwSize m, mwSize n, int count, const char **names) { (void)count, (void)names; return mxCreateDoubleMatrix(m, n, mxREAL); }
 static void mxSetCell(mxArray *into, mwIndex i, mxArray *x) { (void)into, (void)i, (void)x; }
-static void mxSetField(mxArray *into, mwIndex i, const char *name, mxArray *x) { (void)i; if (strcmp(name, "X0") == 0) into->x = x->x; }
+static void mxSetField(mxArray *into, mwIndex i, const char *name, mxArray *x) { (void)i; if (strcmp(name, "X0") == 0 || strcmp(name, "values") == 0) into->m = x->m, into->x = x->x; }
 static mxArray *mxGetField(mxArray *from, mwIndex i, const char *name) { (void)i, (void)name; return from; }
 static double *mxGetPr(const mxArray *a) { return a->x; }
 static double mxGetScalar(const mxArray *a) { return a->x[0]; }
 static size_t mxGetM(const mxArray *a) { return a->m; }
+static size_t mxGetN(const mxArray *a) { return a->n; }
 static size_t mxGetNumberOfElements(const mxArray *a) { return a->m * a->n; }
 static int mxIsEmpty(const mxArray *a) { return a->m * a->n == 0; }
 static int mxIsDouble(const mxArray *a) { return a->text == NULL; }

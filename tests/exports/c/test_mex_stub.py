@@ -39,20 +39,37 @@ def program(tmp_path_factory: pytest.TempPathFactory) -> Path:
     return compiled(ARM, tmp_path_factory.mktemp("mex"))
 
 
-def compiled(system: sf.System, folder: Path) -> Path:
-    sf.export(system, "mex", folder, name="arm")
+def compiled(of: sf.System | sf.Diagram, folder: Path) -> Path:
+    """A program that calls the function; the files of a diagram are compiled beside it."""
+    files = [path.name for path in sf.export(of, "mex", folder, name="arm").files if path.suffix == ".c"]
+    beside = (
+        [name for name in files if name.startswith("arm_") and name != "arm_mex.c"]
+        if isinstance(of, sf.Diagram)
+        else []
+    )
     shutil.copy(Path(__file__).parent / "mex_stub.h", folder / "mex.h")
     (folder / "main.c").write_text(PROGRAM)
-    run("gcc", "-std=c99", "-O0", "-Wall", "-Wno-unused-function", "-I.", "main.c", "-lm", "-o", "ask", cwd=folder)
+    flags = ("-std=c99", "-O0", "-Wall", "-Wno-unused-function", "-I.")
+    run("gcc", *flags, "main.c", *beside, "-lm", "-o", "ask", cwd=folder)
     return folder / "ask"
 
 
-def ask(program: Path, wanted: int, *arguments: Sequence[float] | np.ndarray) -> subprocess.CompletedProcess[str]:
+Argument = Sequence[float] | np.ndarray
+
+
+def ask(program: Path, wanted: int, *arguments: Argument) -> subprocess.CompletedProcess[str]:
     """Call the function; a sequence is a column, an array of two axes what it is."""
-    arrays = [np.reshape(x, (len(x), 1)) if np.ndim(x) == 1 else np.atleast_2d(x) for x in arguments]
-    words = [f"{x.shape[0]} {x.shape[1]} " + " ".join(map(repr, x.ravel(order="F").tolist())) for x in arrays]
-    given = f"{len(arrays)} {wanted} {' '.join(words)}"
-    return subprocess.run([program], input=given, capture_output=True, text=True)
+    return ask_in_turn(program, (wanted, arguments))
+
+
+def ask_in_turn(program: Path, *calls: tuple[int, Sequence[Argument]]) -> subprocess.CompletedProcess[str]:
+    """Call the function so many times in one process."""
+    lines = []
+    for wanted, arguments in calls:
+        arrays = [np.reshape(x, (len(x), 1)) if np.ndim(x) == 1 else np.atleast_2d(x) for x in arguments]
+        words = [f"{x.shape[0]} {x.shape[1]} " + " ".join(map(repr, x.ravel(order="F").tolist())) for x in arrays]
+        lines.append(f"{len(arrays)} {wanted} {' '.join(words)}")
+    return subprocess.run([program], input="\n".join(lines), capture_output=True, text=True)
 
 
 def answers(done: subprocess.CompletedProcess[str]) -> list[np.ndarray]:

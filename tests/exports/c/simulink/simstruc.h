@@ -1,5 +1,5 @@
 /* A stand-in for Simulink's header, of our own: only what the public documentation of level-2 S-functions names and
- * symoSFunction.c uses, so that the block can be compiled and run without Simulink. */
+ * our blocks use, so that they can be compiled and run without Simulink. */
 #ifndef STAND_IN_SIMSTRUC_H
 #define STAND_IN_SIMSTRUC_H
 
@@ -15,14 +15,15 @@ typedef struct mxArray {
     size_t count;
 } mxArray;
 
-enum { MOST_PORTS = 4 };
+enum { MOST_PORTS = 4, MOST_PARAMETERS = 3 };
 
 typedef struct SimStruct {
     int wanted_parameters, given_parameters, held_parameters, n_states, n_inputs, n_outputs, n_pointers;
-    const mxArray *parameters[3];
-    int input_width[MOST_PORTS], output_width[MOST_PORTS];
+    const mxArray *parameters[MOST_PARAMETERS];
+    int input_width[MOST_PORTS], output_width[MOST_PORTS], at_once[MOST_PORTS], stopped;
     double *states, *rates, *input[MOST_PORTS], *output[MOST_PORTS], t, sample_time;
     void *pointers[2];
+    real_T numbers[2];
     const char *error;
 } SimStruct;
 
@@ -40,11 +41,14 @@ typedef struct SimStruct {
 #define ssSetNumInputPorts(S, n) ((S)->n_inputs = (n), 1)
 #define ssSetInputPortWidth(S, i, n) ((S)->input_width[i] = (n))
 #define ssSetInputPortRequiredContiguous(S, i, yes) ((void)(S), (void)(i))
-#define ssSetInputPortDirectFeedThrough(S, i, yes) ((void)(S), (void)(i))
+#define ssSetInputPortDirectFeedThrough(S, i, yes) ((S)->at_once[i] = (yes))
 #define ssSetNumOutputPorts(S, n) ((S)->n_outputs = (n), 1)
 #define ssSetOutputPortWidth(S, i, n) ((S)->output_width[i] = (n))
 #define ssSetNumSampleTimes(S, n) ((void)(S), (void)(n))
 #define ssSetNumPWork(S, n) ((S)->n_pointers = (n))
+#define ssSetNumRWork(S, n) ((void)(S), (void)(n))
+#define ssGetRWork(S) ((S)->numbers)
+#define ssSetStopRequested(S, yes) ((S)->stopped = (yes))
 #define ssSetOptions(S, options) ((void)(S), (void)(options))
 #define ssSetSampleTime(S, i, seconds) ((S)->sample_time = (seconds))
 #define ssSetOffsetTime(S, i, seconds) ((void)(S), (void)(seconds))
