@@ -1,4 +1,4 @@
-"""Blocks of diagrams against a stand-in for Simulink's header (simulink/): the numbers of one diagram of the same blocks."""
+"""Blocks of diagrams by a stand-in for Simulink's header (simulink/): they have the numbers of one diagram of all."""
 
 from __future__ import annotations
 
