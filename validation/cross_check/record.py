@@ -167,6 +167,8 @@ def as_data(
 
 def _entry(row: Comparison) -> dict[str, Any]:
     stated = {name: getattr(row, name) for name in _STATED if name != "note" or row.note}
+    if row.error is not None:
+        stated["error"] = finite(row.error)  # Infinite where nothing was found to compare.
     return stated | {name: finite(value) for name, value in row.extra.items()}
 
 

@@ -35,6 +35,13 @@ def mixed(good: ModelResult) -> Data:
     return as_data(SETTINGS, models, 3.0, ())
 
 
+def test_an_infinite_error_fails_and_is_reported() -> None:
+    """As of a note that is absent: JSON has no infinite numbers."""
+    absent = Comparison("pendulum", "formulas", "notes", "disagree", 1, float("inf"), 6e-3, note="none says so")
+    data = json.loads(json.dumps(as_data(SETTINGS, [ModelResult("pendulum", (absent,))], 3.0, ()), allow_nan=False))
+    assert not data["ok"] and "none says so" in to_markdown(data)
+
+
 def to_html(data: Data) -> str:
     return html.page(compose(data), Provenance.of(data))
 

@@ -29,6 +29,8 @@ _REPEATED, _PROVED = (512, 0.05), 4
 # Change by shorter steps that is worth a note where steps adapt: this many times the bound of a step's error, that by
 # rtol within these shares, and that by atol. A step that is no longer than its error allows is off by far less.
 _BOUNDS, _NOTED = 100.0, (0.01, TOLERANCE)
+# Largest atol by which a motion counts as a rest, that of runs which state none: a larger one may hide a whole motion.
+_REST = 1e-9
 # Change of speed that a step leaves out, by the cubic through its ends, from which it is held against shorter ones.
 _DOUBTED = 0.5
 
@@ -48,7 +50,8 @@ def stepped_over_note(run: ExaminedRun) -> str:
         least, most = _CALLS if settings.adaptive else 0, _CALLS
     number = int(min(max(share, least), most))
     noted = min(max(_BOUNDS * settings.rtol, _NOTED[0]), _NOTED[1]) if settings.adaptive else TOLERANCE
-    size = max(run.fastest, run.rounding(run.states), _BOUNDS * run.allowed / noted)
+    rest = run.allowed * min(1.0, _REST / settings.atol)
+    size = max(run.fastest, run.rounding(run.states), _BOUNDS * rest / noted)
     for ends in _single_steps(run, number):
         for i, part in _doubted(run, ends, number, _DOUBTED * noted, size):
             coarse, first = [x[i : i + 2] for x in ends], [x[i] for x in ends[:3]]
