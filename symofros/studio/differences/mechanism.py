@@ -211,12 +211,13 @@ class Mechanism:
         }
 
     def _friction(self, element: Friction) -> dict[str, float]:
-        """Numbers of dry friction, those that are left out as the model takes them."""
+        """Numbers of dry friction, those that are left out as the model takes them; 0 where none holds beyond it."""
         value, dynamic = self.numbers.value, self.numbers.value(element.dynamic)
         speed = value(element.minimum_velocity)
         stribeck = 10.0 * speed if element.stribeck_velocity is None else value(element.stribeck_velocity)
         static = dynamic if element.static is None else value(element.static)
-        numbers = dynamic, static, speed, stribeck if static > dynamic else 0.0, float(element.sticks)
+        beyond = (static, stribeck) if static > dynamic else (0.0, 0.0)
+        numbers = dynamic, beyond[0], speed, beyond[1], float(element.sticks)
         return dict(zip(("friction", *FRICTION), numbers, strict=True))
 
     def _springs(self, springs: Sequence[Spring]) -> dict[str, float]:

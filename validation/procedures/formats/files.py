@@ -20,7 +20,7 @@ from ..scene import Cell, Scene, off
 
 # Poses in links, in joints' frames and in frames of their own; an inertia that is turned; an axis along another frame;
 # links welded before and behind joints; losses, limits, joints that mimic others; other units.
-_FOLDER = Path(__file__).parents[1] / "corpus" / "readings"
+_FOLDER = Path(__file__).parents[2] / "corpus" / "readings"
 
 
 def native() -> sf.System:
