@@ -61,6 +61,7 @@ if TYPE_CHECKING:
     from symofros.description.system import System as System
     from symofros.description.values import Rotation as Rotation
     from symofros.description.values import as_value
+    from symofros.diagrams.batch import DiagramRuns as DiagramRuns
     from symofros.diagrams.conditional import Condition as Condition
     from symofros.diagrams.diagram import Diagram as Diagram
     from symofros.diagrams.files.reader import load_diagram as load_diagram

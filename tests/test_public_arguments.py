@@ -148,6 +148,7 @@ def constructors() -> list[type]:
     made_here = {
         "Advice",
         "DiagramRun",
+        "DiagramRuns",
         "DiagramStepper",
         "EvaluationContext",
         "Expression",

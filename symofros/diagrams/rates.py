@@ -3,11 +3,15 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterable
+from collections.abc import Iterable, Iterator
 from dataclasses import dataclass
 from fractions import Fraction
+from itertools import count
+
+import numpy as np
 
 from symofros.errors import DescriptionError, Problem
+from symofros.simulation.inputs import ROUNDED_ZERO
 
 # Instants of a common period: more are a sign of periods that do not fit together.
 MAX_INSTANTS = 100_000
@@ -38,6 +42,17 @@ class Schedule:
         gaps = [b - a for a, b in zip(at, [*at[1:], *(first + self.cycle for first in at[:1])], strict=True)]
         return float(min(gaps) * self.base) if gaps else math.inf
 
+    def between(self, t0: float, t_end: float) -> Iterator[tuple[float, frozenset[str]]]:
+        """(time [s], what is due) of each instant up to the end, with the bits that C gives the times."""
+        base_n, base_d = float(self.base.numerator), float(self.base.denominator)
+        for turn in count() if self.instants else ():
+            for k, which in self.instants:
+                t = float(np.float64(t0) + np.float64(turn * self.cycle + k) * base_n / base_d)
+                t = 0.0 if abs(t) < ROUNDED_ZERO * base_n / base_d else t
+                if t > t_end + 1e-9 * base_n / base_d:
+                    return
+                yield min(t, t_end), self.sets[which]
+
     @staticmethod
     def empty() -> Schedule:
         """A schedule without instants."""
@@ -57,9 +72,9 @@ def schedule(rates: Iterable[tuple[str, float, float]], name: str) -> Schedule:
     denominator = math.lcm(*(number.denominator for number in numbers))
     base = Fraction(math.gcd(*(int(number * denominator) for number in numbers)), denominator)
     cycle = math.lcm(*(int(period / base) for _, period, _ in exact))
-    count = sum(cycle // int(period / base) for _, period, _ in exact)
-    if count > MAX_INSTANTS:
-        raise _too_many(name, exact, f"{count} samples before the pattern repeats", f"at most {MAX_INSTANTS}")
+    samples = sum(cycle // int(period / base) for _, period, _ in exact)
+    if samples > MAX_INSTANTS:
+        raise _too_many(name, exact, f"{samples} samples before the pattern repeats", f"at most {MAX_INSTANTS}")
     due: dict[int, set[str]] = {}
     for thing, period, offset in exact:
         for k in range(int(offset / base), cycle, int(period / base)):

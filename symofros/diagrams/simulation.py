@@ -3,19 +3,18 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Iterator, Mapping
+from collections.abc import Mapping
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
-import numpy as np
-
 from symofros.base.arguments import checked
 from symofros.base.options import Options
+from symofros.diagrams.batch import DiagramRuns, run_batch
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.observer import Observer
 from symofros.diagrams.program.compiled import CompiledDiagram, Resolved, compile_diagram, rates_of, resolve
-from symofros.diagrams.rates import Schedule, schedule
+from symofros.diagrams.rates import schedule
 from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.block_functions import Blocks
 from symofros.diagrams.run.examination.deep_contacts import contact_notes
@@ -25,6 +24,7 @@ from symofros.diagrams.run.examination.joint_limits import joint_limit_notes
 from symofros.diagrams.run.examination.prescribed import judge_prescribed
 from symofros.diagrams.run.interpret import BeamWatch, Course, InterpretedRun, run_interpreted
 from symofros.diagrams.run.loop import RECORD
+from symofros.diagrams.run.members import representative
 from symofros.diagrams.run.python_blocks import begun
 from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.run.values import parameter_values, record_interval
@@ -32,7 +32,6 @@ from symofros.diagrams.stepper import DiagramStepper
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.build import find_toolchain
-from symofros.simulation.inputs import ROUNDED_ZERO
 from symofros.simulation.progress import bar
 from symofros.simulation.stepping.methods import METHODS
 
@@ -78,14 +77,55 @@ class Simulation:
         Args:
             t_end: End time [s]; the diagram's own where it states one.
             inputs: Inlet -> numbers, which hold, a Signal, or formulas of t; all inlets of the diagram are given.
-            settings: Fields of `SimulationOptions` in place of the diagram's own; `parameters`, `threads`, `progress`
-                and `observer` as of `run_compiled`.
+            settings: Fields of `SimulationOptions` in place of the diagram's own; `parameters`, `starts`,
+                `threads`, `progress` and `observer` as of `run_compiled`.
 
         Raises:
             SymofrosError: As `run_compiled`; or nobody says where to end.
         """
         chosen = self.diagram.simulation.keywords_with(settings)
         return run_compiled(self.compiled_with(inputs), _end(self.diagram, t_end), **chosen)
+
+    @checked
+    def run_batch(
+        self,
+        t_end: float | None = None,
+        *,
+        parameters: Mapping[str, Any] | None = None,
+        starts: Mapping[str, Any] | None = None,
+        inputs: Mapping[str, Any] | None = None,
+        **settings: Any,
+    ) -> DiagramRuns:
+        """Run it many times in C, several runs at once on threads.
+
+        Each run is that of `run` with the same values, to the last bit, whatever the number of threads; it has its own
+        outcome, and one that ends before leaves the others alone.
+
+        Args:
+            t_end: End time [s]; the diagram's own where it states one.
+            parameters: Run-time parameter -> its values (..., *shape), the batch dimensions first.
+            starts: State -> its first values (..., *shape), as of `run_compiled`.
+            inputs: Inlet -> numbers (..., *shape); a Signal, whose values are (n, size), or (..., n, size) where they
+                differ; or formulas of t, of all runs.
+            settings: Fields of `SimulationOptions` in place of the diagram's own, and `threads`. All records are held.
+
+        Returns:
+            The DiagramRuns, whose batch dimensions are those of all values broadcast together.
+
+        Raises:
+            ShapeError: A value does not fit, or batch dimensions do not broadcast.
+            SymofrosError: As `run_compiled`; or a block is called outside of C, as blocks of Python's are.
+        """
+        chosen = self.diagram.simulation.keywords_with(settings)
+        one = representative(inputs)
+        return run_batch(
+            self.compiled_with(one),
+            _end(self.diagram, t_end),
+            parameters=parameters,
+            starts=starts,
+            inputs=inputs,
+            **chosen,
+        )
 
     def compiled_with(self, inputs: Mapping[str, Any] | None) -> CompiledDiagram:
         """The diagram as C functions, with what is given for its inlets, as of `run`."""
@@ -176,7 +216,7 @@ class Simulation:
         toolchain = find_toolchain(self.options.compiler) if compiled else None
         interval = record_interval(record, t0, t_end, dt)
         plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], resolved.wired.name)
-        instants = list(_instants(plan, t0, t_end))
+        instants = [(t, due - {RECORD}, RECORD in due) for t, due in plan.between(t0, t_end)]
         course = Course(instants, t_end, dt, plan.spacing, METHODS[method].tableau, gains is None)
         blocks = Blocks(resolved, par, gains or (0.0, 0.0), toolchain)
         closing = () if gains else blocks.close_loops()
@@ -205,18 +245,3 @@ def _end(diagram: Diagram, t_end: float | None) -> float:
             )
         )
     return end
-
-
-def _instants(plan: Schedule, t0: float, t_end: float) -> Iterator[tuple[float, frozenset[str], bool]]:
-    """(time, due blocks, whether to record) of each instant up to the end."""
-    base_n, base_d = float(plan.base.numerator), float(plan.base.denominator)
-    slack, turn = 1e-9 * base_n / base_d, 0
-    while True:
-        for k, which in plan.instants:
-            t = float(np.float64(t0) + np.float64(turn * plan.cycle + k) * base_n / base_d)
-            t = 0.0 if abs(t) < ROUNDED_ZERO * base_n / base_d else t
-            if t > t_end + slack:
-                return
-            due = plan.sets[which]
-            yield min(t, t_end), due - {RECORD}, RECORD in due
-        turn += 1

@@ -75,15 +75,17 @@ class DiagramStepper(Stepped):
         plan = schedule([*rates, (RECORD, self.period, 0.0)], name)
         self._plan = PlannedRun(compiled, plan, chosen, chosen.t0, parameter_values(resolved, {}))
         self._name, self._stepping, self._ends = name, Lock(), ExitStack()
+        self._starts: Mapping[str, Any] = {}
         finalize(self, self._ends.close)
         self.reset()
 
     @checked
-    def reset(self, *, parameters: Mapping[str, Any] | None = None) -> None:
+    def reset(self, *, parameters: Mapping[str, Any] | None = None, starts: Mapping[str, Any] | None = None) -> None:
         """Begin anew at the diagram's first state; blocks of Python's begin anew, too.
 
         Args:
             parameters: Run-time parameters by name, as `Simulation.run` takes them; those before by default.
+            starts: First values of states by name, as `parameters`.
 
         Raises:
             SymofrosError: They do not fit, or the first accelerations are not finite.
@@ -91,9 +93,10 @@ class DiagramStepper(Stepped):
         plan, resolved = self._plan, self._plan.compiled.resolved
         if parameters is not None:
             plan = self._plan = replace(plan, par=parameter_values(resolved, parameters))
+        self._starts = dict(self._starts if starts is None else starts)
+        begin, t0 = Start.of(resolved, plan.options.t0, plan.par, self._starts), plan.options.t0
         self._ends.close()
         self._called = self._ends.enter_context(begun(resolved.wired))
-        begin, t0 = Start.of(resolved, plan.options.t0, plan.par), plan.options.t0
         ahead = replace(plan, t_end=t0 + _AHEAD * self.period)
         self._loop, parts = placed_loop(ahead, begin, self._called)
         self._ends.enter_context(closing(self._loop))
@@ -192,7 +195,8 @@ class DiagramStepper(Stepped):
             raise refusal("stepper: no motion yet", repr(self), "a motion has a step at least", "step() first")
         plan = replace(plan, t_end=self.t if self.running else plan.options.t0 + self._marks * self.period)
         resolved, given = plan.compiled.resolved, self._called.given
-        ended = run_from(plan, Start.of(resolved, plan.options.t0, plan.par), CalledBefore(resolved.wired, given))
+        begin = Start.of(resolved, plan.options.t0, plan.par, self._starts)
+        ended = run_from(plan, begin, CalledBefore(resolved.wired, given))
         if live.failure is not None:
             ended.loop.failure, ended.loop.failed_block = live.failure, live.failed_block
         elif isinstance(ended.loop.failure, NotKeptError):

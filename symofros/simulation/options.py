@@ -17,7 +17,7 @@ from symofros.runtime.beams import BEAM_LIMIT
 Stabilisation = Literal["projection", "baumgarte", "none"]
 # What the functions that take these options by name call their own arguments; those of runs of diagrams.
 _CALL = ("q0", "v0", "t_end", "z0", "u", "par")
-DIAGRAM_CALL = ("t_end", "parameters", "threads")
+DIAGRAM_CALL = ("t_end", "parameters", "starts", "threads")
 # What runs of diagrams, their files and the command line call an option.
 _ALIASES = {"record": "output"}
 # Names that other tools have for options and arguments, in small letters, by ours: by spelling, `t` would be near `t0`.

@@ -211,6 +211,39 @@ class Layout:
         sizes = (len(self.q0), len(self.v0), len(self.condition_names))
         return Part(blocks, *(slice(0, size) for size in sizes))
 
+    def start_place(self, name: str) -> tuple[str, Place]:
+        """Where a state begins: its vector, "q", "v" or "u", and its place there.
+
+        Args:
+            name: "block.q" or "block.v" of a mechanism as a whole, "block.state" or "block.memory" of another block, or
+                one entry, such as "arm.q1" or "filter.s[0]".
+
+        Raises:
+            UnknownNameError: There is no such state.
+        """
+        block, _, key = name.rpartition(".")
+        if block in self.q and key in ("q", "v"):
+            return key, self.moved(block)[key == "v"]
+        if (block, key) in self.states:
+            return "v", self.states[block, key]
+        if (block, key) in self.memory:
+            return "u", self.memory[block, key]
+        entries = {
+            names[i]: (group, Place(i, ()))
+            for group, names, places in (
+                ("u", self.u_names, self.memory.values()),
+                ("v", self.v_names, [*self.v.values(), *self.states.values()]),
+                ("q", self.q_names, self.q.values()),
+            )
+            for place in places
+            for i in place.range
+        }
+        if name in entries:
+            return entries[name]
+        what, rule = f"diagram: no state '{name}' that begins with a value", f"known: {', '.join(entries)}"
+        remedy = did_you_mean(name, entries) or "symofros info lists states; outputs and parameters are none"
+        raise UnknownNameError(Problem(what, f"'{name}'", rule[:400], remedy))
+
     @property
     def moving(self) -> Mask:
         """Whether each speed is one of a mechanism (nv), and no state of a force or a block."""

@@ -121,7 +121,7 @@ def _closed(resolved: Resolved, part: Part, stepper: Stepper, begin: Start, par:
     Raises:
         AssemblyError: There is no such state.
     """
-    coordinates, speeds = stated_entries(resolved, part)
+    coordinates, speeds = stated_entries(resolved, part, begin)
     q, v, residual = _projected(stepper.model, part, begin, par)
     on = begin.q.copy(), begin.v.copy()
     on[0][part.q], on[1][part.v] = q, v
@@ -131,7 +131,7 @@ def _closed(resolved: Resolved, part: Part, stepper: Stepper, begin: Start, par:
     ]
     if residual <= CLOSED and not any(map(np.any, moved)):
         return Placed(stepper, q, v)  # Nothing is formed anew for what the projection keeps.
-    near = Start(begin.t, begin.q.copy(), begin.v.copy(), begin.u)
+    near = replace(begin, q=begin.q.copy(), v=begin.v.copy())
     notes = close_loops(resolved, part, near, par)
     q, v, residual = _projected(stepper.model, part, near, par)
     if not residual <= CLOSED:

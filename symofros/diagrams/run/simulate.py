@@ -15,7 +15,7 @@ from symofros.base.arguments import checked
 from symofros.base.arrays import Array
 from symofros.diagrams.inlets import not_given, open_inlets
 from symofros.diagrams.observer import NoObserver, Observer
-from symofros.diagrams.program.compiled import CompiledDiagram, rates_of
+from symofros.diagrams.program.compiled import CompiledDiagram, Resolved, rates_of
 from symofros.diagrams.program.layout import Place
 from symofros.diagrams.program.lowered_block import watched
 from symofros.diagrams.rates import Schedule, schedule
@@ -61,6 +61,7 @@ def run_compiled(
     options: SimulationOptions | None = None,
     *,
     parameters: Mapping[str, Any] | None = None,
+    starts: Mapping[str, Any] | None = None,
     threads: int = 1,
     progress: bool | Callable[[float], None] = False,
     observer: Observer | None = None,
@@ -74,6 +75,7 @@ def run_compiled(
         options: Options of stepping, constraints, recording and pace; those of `SimulationOptions()` by default;
             methods are explicit.
         parameters: Run-time parameters by name, such as {"pd.kp": [100, 80, 50], "plant.m_load": 0.8}.
+        starts: First values of states by name, in place of the diagram's, such as {"plant.q1": 0.3, "filter.s": 0.0}.
         threads: Number of threads that share the parts that meet at samples only; results do not depend on it.
         progress: Show a progress bar; or a function that is called with the time reached [s], now and then.
         observer: Receiver of the records while the run goes on, which may stop it by time.
@@ -81,7 +83,7 @@ def run_compiled(
 
     Raises:
         SymofrosError: The options contradict each other, or name what the diagram lacks.
-        UnknownNameError: A field is not one of SimulationOptions.
+        UnknownNameError: A field is not one of SimulationOptions, or there is no such parameter or state.
         AssemblyError: The first state does not meet the constraints.
         DescriptionError: The diagram has inlets, and it was resolved without inputs.
     """
@@ -90,11 +92,25 @@ def run_compiled(
         raise DescriptionError([not_given(name, inlet.name) for inlet in still_open])
     options = diagram_options(options, changes)
     par = parameter_values(resolved, parameters or {})
+    task = PlannedRun(compiled, recording_plan(resolved, options, t_end), options, t_end, par, threads)
+    return run_planned(task, Start.of(resolved, options.t0, par, starts), progress, observer)
+
+
+def recording_plan(resolved: Resolved, options: SimulationOptions, t_end: float) -> Schedule:
+    """The instants of a run: those of its blocks, and those that are recorded."""
     interval = record_interval(options.output, options.t0, t_end, options.dt)
-    plan = schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], name)
-    task = PlannedRun(compiled, plan, options, t_end, par, threads)
-    with begun(resolved.wired) as called:
-        ended = run_from(task, Start.of(resolved, options.t0, par), called, progress, observer)
+    return schedule([*rates_of(resolved.pieces), (RECORD, interval, 0.0)], resolved.wired.name)
+
+
+def run_planned(
+    task: PlannedRun,
+    begin: Start,
+    progress: bool | Callable[[float], None] = False,
+    observer: Observer | None = None,
+) -> DiagramRun:
+    """Run from a first state, and examine the run."""
+    with begun(task.compiled.resolved.wired) as called:
+        ended = run_from(task, begin, called, progress, observer)
         kept = called.kept()
     return examined_run(task, ended, called.given, kept)
 

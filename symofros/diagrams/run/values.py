@@ -54,24 +54,8 @@ def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
     """
     layout = resolved.layout
     par = np.array(layout.par, dtype=np.float64)
-    settable = layout.par_names[: layout.settable]
-    fields = {f"{block}.{name}": place for (block, name), place in layout.parameters.items() if block}
     for name, value in given.items():
-        array = real_array(value)
-        if name in fields:
-            place = fields[name]
-        elif name in settable:
-            place = Place(settable.index(name), ())
-        else:
-            known = list(dict.fromkeys([*fields, *settable]))
-            raise UnknownNameError(
-                Problem(
-                    f"diagram: no run-time parameter '{name}'",
-                    f"'{name}'",
-                    f"known: {', '.join(known[:12])}",
-                    did_you_mean(name, known),
-                )
-            )
+        array, place = real_array(value), parameter_place(resolved, name)
         if array is None or array.shape not in (place.shape, ()) or not np.all(np.isfinite(array)):
             raise SymofrosError(
                 Problem(
@@ -86,6 +70,24 @@ def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
     for model in resolved.wired.models.names if given else ():
         resolved.wired.models.check_parameters(model, par[layout.parameters["", model].slice])
     return par
+
+
+def parameter_place(resolved: Resolved, name: str) -> Place:
+    """Where a run-time parameter lies among all, by its name: all of it, or one entry.
+
+    Raises:
+        UnknownNameError: There is no such parameter.
+    """
+    layout = resolved.layout
+    settable = layout.par_names[: layout.settable]
+    fields = {f"{block}.{key}": place for (block, key), place in layout.parameters.items() if block}
+    if name in fields:
+        return fields[name]
+    if name in settable:
+        return Place(settable.index(name), ())
+    known = list(dict.fromkeys([*fields, *settable]))
+    what, rule = f"diagram: no run-time parameter '{name}'", f"known: {', '.join(known[:12])}"
+    raise UnknownNameError(Problem(what, f"'{name}'", rule, did_you_mean(name, known)))
 
 
 def _refuse_values(resolved: Resolved, given: Mapping[tuple[str, str], Place], par: Array) -> None:

@@ -18,21 +18,18 @@ from symofros.simulation.results.ends import ENDS
 from symofros.simulation.results.examination.batch_examination import BatchExamination
 from symofros.simulation.results.examination.state_notes import state_notes
 from symofros.simulation.results.outcome import Outcome
+from symofros.simulation.results.runs import Index, Runs, indices
 from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
 from symofros.simulation.stepping.batch_stepper import BatchResults
 from symofros.simulation.stepping.met import Met
 from symofros.simulation.stepping.status import Status
 
-Index = int | tuple[int, ...]
-
 # A sample this near before actions, as a share of its time, is their instant: dense_output.c, SYM_GRID_ACTED.
 _SAME_INSTANT = 1e-14
-# Runs whose steps the summary of a batch looks at.
-_EXAMINED = 8
 
 
 @dataclass(frozen=True, repr=False)
-class Trajectories(BatchResults):
+class Trajectories(Runs, BatchResults):
     """States over time of many runs of one model, whose batch dimensions are written (...).
 
     Attributes:
@@ -71,25 +68,10 @@ class Trajectories(BatchResults):
         """Last good states of forces of each run (..., nz)."""
         return self.model.states_of(self.v_last)
 
-    @property
-    def shape(self) -> tuple[int, ...]:
-        """The batch dimensions."""
-        return self.status.shape
-
-    @property
-    def ok(self) -> npt.NDArray[np.bool_]:
-        """Which runs came to their end (...)."""
-        return np.asarray(self.status == Status.FINISHED)
-
-    @property
-    def kinds(self) -> npt.NDArray[np.str_]:
-        """Kind of each run's Outcome, as a word (...): how the run ended."""
-        return np.asarray(np.vectorize(lambda status: ENDS[int(status)].kind, otypes=["U16"])(self.status))
-
     def outcome(self, index: Index) -> Outcome:
         """Outcome of one run; its steps and inputs are examined at this call, which takes as long as a single run."""
         status, states, steps = int(self.status[index]), self._states(index), int(self.steps[index])
-        bendings, number = self.bendings(index), self._number(index)
+        bendings, number = self.bendings(index), self.number(index)
         if self.examination is not None:
             if self.examination.initial.events:
                 return self.examination.outcome_with_events(number, status, states, steps, self._met(index))
@@ -107,7 +89,7 @@ class Trajectories(BatchResults):
         return tuple(found_of(self.examination.single, met) for met in self._met(index))
 
     def _met(self, index: Index) -> list[Met]:
-        number = self._number(index)
+        number = self.number(index)
         return [met for k, met in self.met if k == number]
 
     def _changes(self, index: Index) -> tuple[tuple[int, Array], ...]:
@@ -118,10 +100,6 @@ class Trajectories(BatchResults):
         times = self.t[self._reached(index)]
         same = 1.0 - _SAME_INSTANT
         return tuple((int(np.searchsorted(times, met.t * same)), done.par_set) for met, done in lasting)
-
-    def _number(self, index: Index) -> int:
-        """Number of a run among all."""
-        return int(np.arange(self.status.size).reshape(self.shape)[index])
 
     def _states(self, index: Index) -> tuple[Array, Array, Array, Array]:
         """Samples that one run reached, and its last state: t (n), q, v, u."""
@@ -154,7 +132,7 @@ class Trajectories(BatchResults):
         reached = self._reached(index)
         par = self.par[index] if self.par.ndim > 1 else self.par
         if self.examination is not None and (self.model.record.rigid_contacts or self.model.record.sticking):
-            par = self.examination.first_parameters(self._number(index))
+            par = self.examination.first_parameters(self.number(index))
         statistics = Statistics(self.method, int(self.steps[index]), int(self.rejected[index]), -1, -1, self.seconds)
         return Trajectory(
             self.model,
@@ -171,42 +149,27 @@ class Trajectories(BatchResults):
             self.z[index][reached],
         )
 
-    def __len__(self) -> int:
-        """Number of runs."""
-        return self.status.size
-
     def __iter__(self) -> Iterator[Trajectory]:
         """Run after run."""
         return (self[index] for index in np.ndindex(self.shape))
 
     def __repr__(self) -> str:
         """Model, method, sizes, and how the runs ended."""
-        counts = zip(*np.unique(self.kinds, return_counts=True), strict=True)
-        ends = ", ".join(f"{count} {kind}" for kind, count in counts)
         name = self.model.record.name
-        return f"<Trajectories of '{name}' by {self.method}: {self.shape} runs, {len(self.t)} samples; {ends}>"
+        return f"<Trajectories of '{name}' by {self.method}: {self.shape} runs, {len(self.t)} samples; {self.ends}>"
 
     def __str__(self) -> str:
         """Counts of outcomes, the first failure, the number with strongly bent beams, and the first note on steps."""
-        kinds = self.kinds
-        names, counts = np.unique(kinds, return_counts=True)
-        lines = [", ".join(f"{count} {name}" for name, count in zip(names, counts, strict=True)) or "no trajectories"]
-        wrong = np.argwhere(~self.ok)
-        if len(wrong):
-            index = tuple(map(int, wrong[0]))
-            lines.append(f"  first: {list(index)}: {self.outcome(index)}")
-        noted = np.argwhere((self.beam_errors > NOTED_ERROR).any(axis=-1))
-        if len(noted):
-            index = tuple(map(int, noted[0]))
-            largest = largest_bending(self.bendings(index))
-            lines.append(f"  beams bend much in {len(noted)}, first: {list(index)}: {largest}")
-        good = np.argwhere(self.ok)
-        for row in good[:: max(1, -(-len(good) // _EXAMINED))]:
-            index = tuple(map(int, row))
+        lines = [self.ends or "no trajectories", *self.first_failure()]
+        noted = indices(np.asarray((self.beam_errors > NOTED_ERROR).any(axis=-1)))
+        if noted:
+            largest = largest_bending(self.bendings(noted[0]))
+            lines.append(f"  beams bend much in {len(noted)}, first: {list(noted[0])}: {largest}")
+        for index in self.examined():
             if self.examination is None or not self.steps[index]:
                 break
             states, steps = self._states(index), int(self.steps[index])
-            notes = self.examination.notes_on_steps(self._number(index), states, steps)
+            notes = self.examination.notes_on_steps(self.number(index), states, steps)
             if notes:
                 lines.append(f"  steps, first seen in {list(index)}: {notes[0]}")
                 break

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass
 from threading import Event as Signal
-from typing import Any
+from typing import Any, Protocol
 
 import numpy as np
 import numpy.typing as npt
@@ -327,7 +327,14 @@ def lines(count: int) -> Array:
     return memory[-(memory.ctypes.data // 8) % _LINE :][:count]
 
 
-def run_batch_steppers(steppers: Sequence[BatchStepper]) -> None:
+class Worker(Protocol):
+    """Runs a share of a batch."""
+
+    def run(self, stop: Signal) -> None:
+        """Run each of the share to its end, or until `stop` is set."""
+
+
+def run_batch_steppers(steppers: Sequence[Worker]) -> None:
     """Run each in a thread of its own; Ctrl-C ends all, and keeps the results so far."""
     stop = Signal()
     try:
