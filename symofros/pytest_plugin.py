@@ -72,4 +72,4 @@ def pytest_collection_modifyitems(session: Any, config: Any, items: list[Any]) -
 def pytest_unconfigure(config: Any) -> None:
     """End the processes that engines ran in."""
     if config.getoption("--symofros-engine", None):
-        harness_module("ci.engines").finish()
+        harness_module("ci.items").finish()

@@ -21,11 +21,11 @@ class Command:
 COMMANDS = {
     "check": Command("cross_check.report", "Compare our C of each MODEL with every engine that can represent it."),
     "oracle": Command(
-        "studies.reports.oracle",
+        "studies.oracle",
         "Compare with SymPy's derivations by Kane's method, in extended precision.",
     ),
     "mutation": Command(
-        "studies.reports.mutation",
+        "studies.mutation",
         "Plant single faults in generated programs; the cross-check must catch every one that matters.",
     ),
     "mutants": Command(
@@ -33,7 +33,7 @@ COMMANDS = {
         "Plant single faults in the source, Python and C: `check` or the tests must see each that changes a result.",
     ),
     "fuzz": Command(
-        "studies.reports.fuzz",
+        "studies.fuzz",
         "Feed mutated, hostile files and formulas to the readers: none may crash or hang them.",
     ),
     "adversary": Command(
@@ -63,9 +63,9 @@ COMMANDS = {
         "timing.report",
         "Time generated C against Pinocchio's C++, MuJoCo's C, and C by CasADi and by SymPy.",
     ),
-    "rollouts": Command("studies.reports.rollouts", "Time thousands of motions of an arm, against mujoco.rollout."),
+    "rollouts": Command("studies.rollouts", "Time thousands of motions of an arm, against mujoco.rollout."),
     "exports": Command(
-        "studies.reports.exports",
+        "studies.exports",
         "Time calls of an exported seven-joint arm: C, Python, MEX, FMU; and the worst case in C.",
     ),
     "environments": Command(
@@ -81,7 +81,7 @@ COMMANDS = {
         "Compare speed at equal accuracy: our models and methods, and engines with their own integrators.",
     ),
     "studio": Command(
-        "studies.reports.studio",
+        "studies.studio",
         "Measure the studio in a browser: times to the first picture and of edits, frames, sizes, clicks of sessions.",
     ),
     "dashboard": Command("dashboard.command", "Gather the reports on one page."),

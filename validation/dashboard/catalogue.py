@@ -15,7 +15,7 @@ from ..pareto import report as pareto
 from ..recall import report as recall
 from ..reporting.record import Topic
 from ..stability import report as stability
-from ..studies.reports import exports, fuzz, mutation, oracle, rollouts, studio
+from ..studies import exports, fuzz, mutation, oracle, rollouts, studio
 from ..timing import report as timing
 
 _TRUTH = (check, oracle, mutation, mutants, fuzz, adversary, engines, recall, campaign)

@@ -8,11 +8,13 @@ from __future__ import annotations
 
 import inspect
 import json
+import shutil
 import subprocess
 import sys
 import time
-from collections.abc import Iterable, Mapping, Sequence
+from collections.abc import Callable, Iterable, Iterator, Mapping, Sequence
 from dataclasses import asdict, dataclass
+from importlib.util import find_spec
 from pathlib import Path
 from typing import Annotated, Any
 
@@ -20,15 +22,84 @@ import typer
 from rich.console import Console
 
 from symofros.harness import command_line
+from symofros.tools import present as graphics_processor
 from symofros.tools import stored_json, write_atomically
 
+from ..cuda import warp
+from ..engines.plugins import OWN
+from ..faults.environment import default_folder
 from ..program import PROGRAM
 from ..reporting import markdown, provenance
 from ..reporting.command import REPORTS, Exit, Output, Quick, known, present, progress_bar
 from ..reporting.record import Table, Topic
+from ..studies import studio
 from .catalogue import TOPICS
 from .gather import Entry, gather
-from .needs import NEEDS, Needs
+
+
+@dataclass(frozen=True)
+class Needs:
+    """What a report takes.
+
+    Attributes:
+        packages: Packages, as they are imported.
+        programs: Programs.
+        besides: What else is missing here, in words; "" for nothing.
+    """
+
+    packages: tuple[str, ...] = ()
+    programs: tuple[str, ...] = ()
+    besides: Callable[[], str] = str
+
+    @property
+    def missing(self) -> str:
+        """What this machine lacks of it; "" for nothing."""
+        return ", ".join(self._missing())
+
+    def _missing(self) -> Iterator[str]:
+        packages = [name for name in self.packages if find_spec(name) is None]
+        yield from (f"package {name}" for name in packages)
+        yield from (f"program {name}" for name in self.programs if shutil.which(name) is None)
+        if not packages and (said := self.besides()):
+            yield said
+
+
+def _engines() -> str:
+    absent = [name for name, plugin in OWN.items() if not plugin.version()]
+    return f"engines {', '.join(absent)} (or parts measured elsewhere, --part)" if absent else ""
+
+
+def _releases() -> str:
+    return (
+        ""
+        if default_folder().is_dir()
+        else "environments of releases: `recall` installs them, half an hour of downloads"
+    )
+
+
+def _processor() -> str:
+    return "a graphics processor" if graphics_processor() is None else warp.missing()
+
+
+_ENGINES = ("pinocchio", "mujoco", "exudyn", "casadi")
+# By the names of reports; the others take none of it.
+NEEDS: dict[str, Needs] = {
+    "check": Needs(_ENGINES),
+    "mutation": Needs(_ENGINES),
+    "mutants": Needs((*_ENGINES, "pytest", "xdist")),
+    "adversary": Needs(("hypothesis",)),
+    "engines": Needs(besides=_engines),
+    "recall": Needs(besides=_releases),
+    "campaign": Needs((*_ENGINES, "pyarrow", "distributed")),
+    "timing": Needs(_ENGINES, ("c++",)),
+    "rollouts": Needs(("mujoco",)),
+    "exports": Needs(programs=("octave-cli", "mkoctfile")),
+    "environments": Needs(("jax", "torch", "casadi"), ("node", "clang")),
+    "cuda": Needs(besides=_processor),
+    "pareto": Needs(("mujoco", "exudyn")),
+    "studio": Needs(("playwright", "pytest"), ("npm",), besides=studio.missing),
+}
+
 
 WORK = Path("build/reports")
 # What a process that is interrupted gets to write what it has [s].

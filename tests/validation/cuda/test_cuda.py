@@ -14,7 +14,7 @@ from symofros.runtime.cuda import cuda_model, figures
 from symofros.runtime.cuda.driver import Driver
 from symofros.runtime.cuda.nvrtc import KernelUsage
 from tests.cuda_on_host import compile_on_host, host_driver
-from validation.cuda import kernels, measure, report, states, warp
+from validation.cuda import kernels, report, states, warp
 from validation.cuda.record import PEER, KernelRow, Record, RolloutRow
 from validation.cuda.states import Subject
 from validation.reporting.command import Run
@@ -30,9 +30,9 @@ def device(tmp_path_factory: pytest.TempPathFactory) -> Iterator[Driver]:
     made = host_driver(tmp_path_factory.mktemp("driver"))
     patch = pytest.MonkeyPatch()
     compile_on_host(patch, made, tmp_path_factory.mktemp("kernels"))
-    patch.setattr(measure, "present", lambda: made)
-    patch.setattr(measure, "copied", lambda _: 4e12)
-    patch.setattr(measure, "_STATES", 8)
+    patch.setattr(report, "present", lambda: made)
+    patch.setattr(report, "copied", lambda _: 4e12)
+    patch.setattr(report, "_STATES", 8)
     patch.setattr(cuda_model, "usage_of", lambda *_: _Everything())
     patch.setattr(kernels, "MOTIONS", 16)
     patch.setattr(kernels, "_REPEATS", 1)
@@ -51,9 +51,9 @@ class _Everything(dict[str, KernelUsage]):
 
 def test_kernels_and_rollouts_are_compared_with_c(device: Driver, monkeypatch: pytest.MonkeyPatch) -> None:
     monkeypatch.setattr(warp, "missing", lambda: f"{PEER}: not here")
-    monkeypatch.setattr(measure, "MODELS", ("planar2R",))
-    monkeypatch.setattr(measure, "FUNCTIONS", ("dynamics", "forward_dynamics"))
-    data = measure.measure(Run(report.TOPIC, Path("nowhere")))
+    monkeypatch.setattr(report, "MODELS", ("planar2R",))
+    monkeypatch.setattr(report, "FUNCTIONS", ("dynamics", "forward_dynamics"))
+    data = report.measure(Run(report.TOPIC, Path("nowhere")))
     assert data["ok"], data
     assert len(data["kernels"]) == 8 and len(data["rollouts"]) == 4
     for row in data["kernels"]:

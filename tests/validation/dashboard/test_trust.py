@@ -10,10 +10,9 @@ from typing import Any
 import pytest
 
 from validation.dashboard.catalogue import TOPICS
-from validation.dashboard.features import features_of
 from validation.dashboard.gather import Entry, gather
 from validation.dashboard.index import headline, index
-from validation.dashboard.trust import trust
+from validation.dashboard.trust import features_of, trust
 from validation.reporting import html
 from validation.reporting.record import Report, Search
 

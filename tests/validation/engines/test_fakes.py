@@ -30,8 +30,8 @@ def stored(tmp_path_factory: pytest.TempPathFactory) -> Report:
     folder = tmp_path_factory.mktemp("fakes")
     install(folder)
     paths = os.pathsep.join([str(folder), str(ROOT), os.environ.get("PYTHONPATH", "")])
-    engines = [word for name in ("pinocchio", "dying", *PLUGINS) for word in ("--engine", name)]
-    command = [sys.executable, "-m", "validation", "engines", *engines, "--kinds", "revolute x", "--tries", "3"]
+    items = [word for name in ("pinocchio", "dying", *PLUGINS) for word in ("--engine", name)]
+    command = [sys.executable, "-m", "validation", "engines", *items, "--kinds", "revolute x", "--tries", "3"]
     done = subprocess.run(
         [*command, "--output", str(folder / "out")],
         cwd=ROOT,
@@ -178,13 +178,13 @@ def test_an_assertion_as_a_tree_is_built_proves_nothing(tmp_path: Path) -> None:
 
 
 def test_a_plug_in_that_raises_fails_its_test_in_pytest(monkeypatch: pytest.MonkeyPatch) -> None:
-    from validation.ci import engines
-    from validation.ci.cells import CellFailure
+    from validation.ci import items
+    from validation.ci.items import CellFailure
     from validation.engines.verdicts import Cell
 
     cell = Cell("uncalled", "revolute x", "gravity", "plug-in", words="KeyError: 'no joint 7'")
-    monkeypatch.setattr(engines, "_cells", lambda *_: {"gravity": cell})
-    item = engines.EngineCheck.__new__(engines.EngineCheck)
+    monkeypatch.setattr(items, "_cells", lambda *_: {"gravity": cell})
+    item = items.EngineCheck.__new__(items.EngineCheck)
     item.engine, item.kind, item.wanted, item.together = "uncalled", "revolute x", "gravity", ("gravity",)
     with pytest.raises(CellFailure, match="in the plug-in: KeyError: 'no joint 7'"):
         item.runtest()

@@ -10,9 +10,8 @@ import pytest
 from validation.environments import worker
 from validation.environments.in_jax import JAX
 from validation.environments.in_torch import TORCH
-from validation.environments.measure import take
 from validation.environments.record import NATIVE, OURS, Absent, Record, Row
-from validation.environments.report import TOPIC
+from validation.environments.report import TOPIC, take
 from validation.reporting.command import composed
 from validation.reporting.plain import plain
 from validation.reporting.record import Report

@@ -11,11 +11,9 @@ import pytest
 import symofros as sf
 from validation.mutation import overlay as overlays
 from validation.mutation.fault import SIGN, SourceFault
-from validation.mutation.measure import as_data
 from validation.mutation.overlay import Overlay
-from validation.mutation.report import compose
-from validation.mutation.store import Store
-from validation.mutation.study import CHECK, LONGER, OUTPUTS, TESTS, Study, argued_faults
+from validation.mutation.report import as_data, compose
+from validation.mutation.study import CHECK, LONGER, OUTPUTS, TESTS, Store, Study, argued_faults
 from validation.mutation.tests_judge import _GENERAL, _MIRRORS
 
 ROOT = Path(__file__).parents[3]

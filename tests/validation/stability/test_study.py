@@ -12,8 +12,7 @@ import pytest
 import symofros as sf
 from validation.reporting.command import Run
 from validation.stability.closed_loops import baumgarte
-from validation.stability.measure import measure
-from validation.stability.report import TOPIC
+from validation.stability.report import TOPIC, measure
 from validation.stability.study import Cell, Map, Subject, cell
 
 

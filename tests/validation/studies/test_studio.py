@@ -9,7 +9,7 @@ import pytest
 
 from validation.reporting import html
 from validation.studies import studio
-from validation.studies.reports.studio import compose
+from validation.studies.studio import compose
 
 LINES: list[dict[str, Any]] = [
     {"what": "session", "name": "a four-bar", "clicks": 12, "keys": 3, "most_clicks": 20, "most_keys": 4},

@@ -10,7 +10,7 @@ from typer.testing import CliRunner
 
 from tests.validation.timing.records import entry, made
 from validation.__main__ import app
-from validation.timing import measure, worker
+from validation.timing import report, worker
 from validation.timing.contestants import engines
 from validation.timing.record import Record
 from validation.timing.run import take
@@ -64,8 +64,8 @@ def test_an_interrupt_keeps_earlier_measurements(tmp_path: Path, monkeypatch: py
         record.entries.append(entry())
         raise KeyboardInterrupt
 
-    monkeypatch.setattr(measure, "run_job", half)
-    monkeypatch.setattr(measure, "prepare", lambda todo, say: [])
+    monkeypatch.setattr(report, "run_job", half)
+    monkeypatch.setattr(report, "prepare", lambda todo, say: [])
     arguments = ["timing", "--model", "panda", "--report", str(tmp_path)]
     assert CliRunner().invoke(app, arguments).exit_code == 130
     assert len(json.loads((tmp_path / "timing.json").read_text())["entries"]) == 1

@@ -17,7 +17,7 @@ from validation.engines.asking import questions
 from validation.engines.plugins import OWN
 from validation.engines.releases import Opened, Release
 from validation.faults.entry import faults
-from validation.recall import measure
+from validation.recall import report
 
 NAME = "pinocchio_jacobian_rate_aligned"
 SUITE = "{python} -c \"print('not ok' if '{version}' == '" + faults()[NAME].wrong + "' else 'ok', '%s')\""
@@ -32,8 +32,8 @@ def asked(*arguments: str) -> dict[str, object]:
 
 @pytest.mark.parametrize("check, score", [("getFrameJacobianTimeVariation of a tip", "hit"), ("colours", "miss")])
 def test_a_suite_is_scored(check: str, score: str, monkeypatch: pytest.MonkeyPatch) -> None:
-    monkeypatch.setattr(measure, "kept", lambda folder, requirements: Path(sys.executable))
-    monkeypatch.setattr(measure, "size_of", lambda python: 0.0)
+    monkeypatch.setattr(report, "kept", lambda folder, requirements: Path(sys.executable))
+    monkeypatch.setattr(report, "size_of", lambda python: 0.0)
     row = asked("--suite", SUITE % check)
     assert (row["score"], row["alarms"], row["cells"]) == (score, 0, 2)
 
@@ -43,16 +43,16 @@ def test_releases_that_can_not_be_asked_are_no_misses(monkeypatch: pytest.Monkey
     def none(pairs: Sequence[tuple[object, Release]], folder: Path) -> Iterator[Opened]:
         yield Opened(failures={release: "no wheels" for _, release in pairs})
 
-    monkeypatch.setattr(measure, "opened", none)
+    monkeypatch.setattr(report, "opened", none)
     row = asked()
     assert (row["score"], row["why"]) == ("not asked", "no wheels")
 
 
 def test_trees_are_called_as_the_engine_calls_what_they_state() -> None:
-    called = measure.stated_by(OWN["mujoco"], questions())
+    called = report.stated_by(OWN["mujoco"], questions())
     assert called["attached chain"].done == "MjSpec, attach_body" and not called["revolute x"].done
     assert "equality/connect" in called["point between branches"].called
-    written = measure.stated_by(OWN["pybullet"], questions())
+    written = report.stated_by(OWN["pybullet"], questions())
     assert written["urdf: plain, written"].done == "UrdfEditor.saveUrdf" and not written["urdf: plain"].done
 
 
@@ -65,10 +65,10 @@ OTHER = "pinocchio_universal_coriolis"
 
 
 @pytest.fixture
-def report(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
+def folder(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> Path:
     """The folder of a report of two faults, both missed."""
-    monkeypatch.setattr(measure, "kept", lambda folder, requirements: Path(sys.executable))
-    monkeypatch.setattr(measure, "size_of", lambda python: 0.0)
+    monkeypatch.setattr(report, "kept", lambda folder, requirements: Path(sys.executable))
+    monkeypatch.setattr(report, "size_of", lambda python: 0.0)
     named(tmp_path, NAME, OTHER, "--suite", SUITE % "colours")
     return tmp_path
 
@@ -78,22 +78,22 @@ def named(folder: Path, *arguments: str) -> dict[str, Any]:
     return dict(json.loads((folder / "recall.json").read_text(encoding="utf-8")))
 
 
-def test_an_update_keeps_the_rows_of_other_faults(report: Path) -> None:
-    before = {row["name"]: row for row in named(report, NAME, OTHER, "--suite", SUITE % "colours")["faults"]}
-    after = named(report, NAME, "--update", "--suite", SUITE % "colours")
+def test_an_update_keeps_the_rows_of_other_faults(folder: Path) -> None:
+    before = {row["name"]: row for row in named(folder, NAME, OTHER, "--suite", SUITE % "colours")["faults"]}
+    after = named(folder, NAME, "--update", "--suite", SUITE % "colours")
     rows = {row["name"]: row for row in after["faults"]}
     assert rows.keys() == before.keys() == {NAME, OTHER} and "origin" not in rows[NAME]
     assert rows[OTHER].pop("origin").keys() == {"revision", "date"} and rows[OTHER] == before[OTHER]
-    assert "When the 2 faults were asked, where earlier" in (report / "recall.md").read_text(encoding="utf-8")
-    after = named(report, OTHER, "--update", "--suite", SUITE % "colours")
+    assert "When the 2 faults were asked, where earlier" in (folder / "recall.md").read_text(encoding="utf-8")
+    after = named(folder, OTHER, "--update", "--suite", SUITE % "colours")
     assert [row["name"] for row in after["faults"] if "origin" in row] == [NAME]
 
 
-def test_a_report_of_another_way_of_asking_is_not_updated(report: Path) -> None:
-    text = (report / "recall.json").read_text(encoding="utf-8")
+def test_a_report_of_another_way_of_asking_is_not_updated(folder: Path) -> None:
+    text = (folder / "recall.json").read_text(encoding="utf-8")
     for arguments in (["--smoke"], ["--suite", "another"]):
-        done = CliRunner().invoke(app, ["recall", NAME, "--update", *arguments, "--report", str(report)])
+        done = CliRunner().invoke(app, ["recall", NAME, "--update", *arguments, "--report", str(folder)])
         assert done.exit_code == 2 and "ask alike" in done.output.replace("\n", " ")
-    assert (report / "recall.json").read_text(encoding="utf-8") == text
-    done = CliRunner().invoke(app, ["recall", NAME, "--update", "--report", str(report / "none")])
+    assert (folder / "recall.json").read_text(encoding="utf-8") == text
+    done = CliRunner().invoke(app, ["recall", NAME, "--update", "--report", str(folder / "none")])
     assert done.exit_code == 2 and "leave --update out" in " ".join(done.output.replace("│", " ").split())

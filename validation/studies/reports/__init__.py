@@ -1,1 +1,0 @@
-"""The reports of studies: what is measured, and what is said of it."""
