@@ -19,6 +19,7 @@ from typing import TYPE_CHECKING, Any
 # the readers of files.
 if TYPE_CHECKING:
     from symofros import interop as interop
+    from symofros.base.events import Event as Event
     from symofros.base.options import Options as Options
     from symofros.compiler import compile_library as compile_library
     from symofros.compiler import compile_system
@@ -106,7 +107,6 @@ if TYPE_CHECKING:
     from symofros.simulation.analysis.rollout import Rollout as Rollout
     from symofros.simulation.analysis.rollout import rollout as rollout
     from symofros.simulation.analysis.state_space import state_space as state_space
-    from symofros.simulation.events import Event as Event
     from symofros.simulation.inputs import Signal as Signal
     from symofros.simulation.options import SimulationOptions as SimulationOptions
     from symofros.simulation.results.outcome import Outcome as Outcome

@@ -2,7 +2,7 @@
 
 | stage | from | to |
 |---|---|---|
-| build_tree | System | SpanningTree, or every error found: numbered links, named frames, indices of q, v, u, par |
+| tree_with_events | System | SpanningTree, or all errors: numbered links, named frames, indices of q, v, u, par |
 | model_record | SpanningTree | ModelRecord: names, sizes, defaults, limits |
 | form_program | SpanningTree, requests | Program: named functions over one expression graph (Jourdain) |
 | run_passes | Program | Program: staged, verified |
@@ -41,10 +41,11 @@ from symofros.generator.record import model_record
 from symofros.generator.units import UnitCompiler
 from symofros.mechanics.dynamics.functions import Request
 from symofros.mechanics.topology.beams import omitted_rotary_inertia
+from symofros.mechanics.topology.events import tree_with_events
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.remarks import rotation_remarks
 from symofros.mechanics.topology.run_time import RunTimeCheck
-from symofros.mechanics.topology.tree import SpanningTree, build_tree
+from symofros.mechanics.topology.tree import SpanningTree
 from symofros.runtime.background import BackgroundCompilation
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.build.prebuilt import prebuilt_library
@@ -140,7 +141,7 @@ class Compilation:
     @cached_property
     def tree(self) -> SpanningTree:
         """The system, checked and numbered."""
-        return build_tree(self.system)
+        return tree_with_events(self.system)
 
     @property
     def requests(self) -> tuple[Request, ...]:

@@ -21,7 +21,8 @@ from symofros.description.remarks import note
 from symofros.description.system import WAIVERS, System
 from symofros.description.urdf.reader import read_urdf
 from symofros.errors import Argument, DescriptionError, Problem, did_you_mean
-from symofros.mechanics.topology.graph import find_problems, name_problems
+from symofros.mechanics.topology.events import find_problems
+from symofros.mechanics.topology.graph import name_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import has_physical_inertia
 from symofros.mechanics.topology.remarks import rotation_remarks

@@ -61,7 +61,7 @@ ALLOWED = table("""
         generator.codegen runtime
     generator.programs: base errors expr mechanics.topology mechanics.kinematics mechanics.dynamics
         generator.passes generator.codegen
-    generator.units: base errors native expr mechanics.dynamics generator.passes runtime
+    generator.units: base errors native expr mechanics.topology mechanics.dynamics generator.passes runtime
         generator.codegen generator.record generator.programs
     compiler: base errors expr description mechanics.topology mechanics.dynamics runtime generator.passes
         generator.codegen generator.record generator.beams generator.held_beams generator.instants

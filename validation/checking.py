@@ -176,7 +176,8 @@ def check(subject: Subject, settings: Settings, factories: Factories | None = No
         SymofrosError: Our own model can't be made.
     """
     assembly = subject.assembly
-    subject = replace(subject, frames=subject.frames or chosen_frames(assembly))
+    system = _without_events(subject.system)
+    subject = replace(subject, system=system, frames=subject.frames or chosen_frames(assembly))
     obstacle = unsampled_motion(subject.system, assembly)
     if obstacle:
         return failed(subject.label, "compile", obstacle)
@@ -203,6 +204,14 @@ def check(subject: Subject, settings: Settings, factories: Factories | None = No
     return _result(bench, rows)
 
 
+def _without_events(system: sf.System) -> sf.System:
+    """The system as engines are asked about it: at states, and over motions in which nothing switches."""
+    if not system.events:
+        return system
+    note = f"events are not compared, nor what they do: {', '.join(system.events)}"
+    return replace(system, events={}, notes=(*system.notes, note))
+
+
 def _comparisons(bench: _Bench) -> Iterator[Comparison]:
     """All rows of one model's table but those of engines that can't represent it."""
     if not bench.solvable:
@@ -223,7 +232,8 @@ def _comparisons(bench: _Bench) -> Iterator[Comparison]:
             yield from [raised(bench.label, one.name, "elements", rows)] if isinstance(rows, Raised) else rows
         if not bench.settings.engines:
             yield from _relations(bench)
-            if bench.subject.system is references.MODELS.get(bench.label):
+            stated = references.MODELS.get(bench.label)
+            if stated is not None and _without_events(stated) == bench.subject.system:
                 yield from _by_formulas(bench, "procedures", bench.variants.states)
 
 

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Mapping
 from dataclasses import dataclass, field, replace
 
+from symofros.base.events import Event
 from symofros.blocks.checks import refuse
 from symofros.blocks.model_function import OFFERED, output_ports, output_values
 from symofros.blocks.quantities import WRENCH, frame_ports, motion_port
@@ -13,7 +14,6 @@ from symofros.diagrams.program.variants import FRICTION
 from symofros.diagrams.tensor import Tensor, joined
 from symofros.errors import DescriptionError, Problem, did_you_mean
 from symofros.expr import ZERO
-from symofros.simulation.events import Event
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -27,8 +27,9 @@ class ForwardDynamics(Block):
         engaged: Whether an input "engaged" says which constraints hold now: 1 or 0, one a constraint, from a sampled
             block. A constraint that engages takes the speeds onto itself as a plastic impact does; one whose frames are
             then more than 1e-3 m or rad apart ends the run.
-        events: Events of the mechanism, as `sf.simulate` takes them: name -> formula, or sf.Event with what it sets. In
-            place of `engaged`, for constraints with switches; inputs are those of `u`.
+        events: Events of the mechanism, as `sf.simulate` takes them: name -> formula, or sf.Event with what it sets.
+            They come after the model's own; one of the same name stands in its place, and null leaves it out. In place
+            of `engaged`, for constraints with switches; inputs are those of `u`.
         tells: Functions of the model that are outputs, too, at the present motion and parameters, such as
             "kinetic_energy", "closure_wrenches", "joint_wrenches", "contact_forces" or "centroidal_momentum": an output
             of that name; where one has several, FUNCTION_OUTPUT each ("contact_forces_gap").
@@ -37,7 +38,7 @@ class ForwardDynamics(Block):
     model: str
     perturbed: tuple[str, ...] = ()
     engaged: bool = False
-    events: Mapping[str, Event | str] = field(default_factory=dict)
+    events: Mapping[str, Event | str | None] = field(default_factory=dict)
     tells: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
@@ -52,7 +53,7 @@ class ForwardDynamics(Block):
         """The model."""
         return self.model
 
-    def mechanism_events(self) -> Mapping[str, Event | str]:
+    def mechanism_events(self) -> Mapping[str, Event | str | None]:
         """The events."""
         return self.events
 

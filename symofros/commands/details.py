@@ -1,4 +1,4 @@
-"""What `symofros info` shows of a model beside its tree: masses, coordinates with their limits, parameters, frames."""
+"""What `symofros info` shows of a model beside its tree: masses, coordinates, limits, parameters, events, frames."""
 
 from __future__ import annotations
 
@@ -7,7 +7,7 @@ from typing import Any
 
 from rich.table import Table
 
-from symofros.description import Beam
+from symofros.description import Beam, event_text
 from symofros.mechanics.topology import Numbers, SpanningTree, beam_mass
 
 # Frames of a model that are named; the rest are counted.
@@ -45,7 +45,8 @@ def details(tree: SpanningTree) -> dict[str, Any]:
         for item in system.parameters
     ]
     frames = [frame.name for frame in tree.frames]
-    return {"bodies": bodies, "coordinates": coordinates, "parameters": parameters, "frames": frames}
+    events = [{"name": name, "states": event_text(event)} for name, event in system.events.items()]
+    return {"bodies": bodies, "coordinates": coordinates, "parameters": parameters, "events": events, "frames": frames}
 
 
 def tables(facts: dict[str, Any]) -> list[Table]:
@@ -63,7 +64,10 @@ def tables(facts: dict[str, Any]) -> list[Table]:
     parameters = Table("parameter", "value", "unit", "", title="Parameters")
     for item in facts["parameters"]:
         parameters.add_row(item["name"], _number(item["value"]), item["unit"], "constant" if item["constant"] else "")
-    return [table for table in (masses, bounds, parameters) if table.row_count]
+    events = Table("event", "zero of ...; what happens", title="Events")
+    for item in facts["events"]:
+        events.add_row(item["name"], item["states"])
+    return [table for table in (masses, bounds, parameters, events) if table.row_count]
 
 
 def frames_line(facts: dict[str, Any]) -> str:

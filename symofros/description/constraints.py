@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import MutableMapping
+from collections.abc import Iterable, MutableMapping
 from dataclasses import dataclass
 from typing import Any, Literal, get_args
 
@@ -352,6 +352,11 @@ Constraint = Closure | Rod | Coupling | KnifeEdge | Rolling | Nonholonomic | Tou
 BETWEEN_FRAMES = (Closure, Rod, Touching)
 # What knows no bodies, and so has no wrench.
 BY_FORMULA = (Coupling, Nonholonomic)
+
+
+def acts_on_bodies(constraints: Iterable[Constraint]) -> list[str]:
+    """Names of the constraints with a wrench: all but conditions by formula, which know no bodies."""
+    return [constraint.name for constraint in constraints if not isinstance(constraint, BY_FORMULA)]
 
 
 def section_order(constraint: Constraint) -> int:

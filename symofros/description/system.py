@@ -12,11 +12,13 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from symofros.base.arguments import entries_of, shown
+from symofros.base.events import Event
 from symofros.description.beams.beam import Beam
 from symofros.description.beams.segments import SegmentAnchors, segment_names, segments_of
 from symofros.description.constraints import Constraint, Switch, section_order
 from symofros.description.contacts import Contact
 from symofros.description.entries import refuses_unknown_entries, shown_entries
+from symofros.description.events import as_events
 from symofros.description.forces import Connection, ForceState, Load, Potential, VirtualPower
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
@@ -190,6 +192,9 @@ class System:
         origin: "file:line" of objects, keyed by ("body", name), ("joint", name), …; not part of equality.
         visuals: Body -> how it looks, as an importer read it; not part of equality, nor of what is compiled.
         switches: Constraints that can be released and engaged while a mechanism moves.
+        states: States of forces.
+        events: Name -> formula or Event: what runs of the model look for, and do there. Who runs it may add others, or
+            replace them by name. They count in equality, but no code that is compiled depends on them.
     """
 
     name: str
@@ -206,6 +211,7 @@ class System:
     visuals: Mapping[str, tuple[Visual, ...]] = field(default_factory=dict, compare=False, repr=False)
     switches: tuple[Switch, ...] = ()
     states: tuple[ForceState, ...] = ()
+    events: Mapping[str, Event] = field(default_factory=dict, hash=False, repr=False)
 
     def __post_init__(self) -> None:
         """Freeze the collections and convert the gravity."""
@@ -232,6 +238,7 @@ class System:
         object.__setattr__(self, "gravity", as_vector(self.gravity, f"system '{self.name}': gravity"))
         object.__setattr__(self, "origin", MappingProxyType(dict(self.origin)))
         object.__setattr__(self, "visuals", MappingProxyType(dict(self.visuals)))
+        object.__setattr__(self, "events", MappingProxyType(as_events(self.events)))
 
     @property
     def beams(self) -> tuple[Beam, ...]:
@@ -281,6 +288,7 @@ class System:
             dict(self.visuals),
             self.switches,
             self.states,
+            dict(self.events),
         )
 
     def __repr__(self) -> str:

@@ -20,6 +20,7 @@ from symofros.description import System
 from symofros.diagrams.diagram import Diagram
 from symofros.errors import DescriptionError, ExportError, Problem, UnknownNameError, did_you_mean
 from symofros.exports.c.c_package import write_c_package
+from symofros.exports.c.event_plan import TARGETS as EVENT_TARGETS
 from symofros.exports.c.event_plan import event_plan
 from symofros.exports.c.mex import write_diagram_mex, write_mex
 from symofros.exports.c.reference import POINTS, checks
@@ -32,7 +33,7 @@ from symofros.exports.folder import check_folder
 from symofros.exports.functions import states_note
 from symofros.exports.interchange.mjcf import write_mjcf
 from symofros.exports.interchange.urdf import write_urdf
-from symofros.exports.limits import joints_of, limits_note
+from symofros.exports.limits import events_note, joints_of, limits_note
 from symofros.exports.material import Material, Stepping
 from symofros.exports.wasm import wasm
 from symofros.exports.wasm.wasm import write_wasm
@@ -129,7 +130,7 @@ def export(
             0.01 on FMUs log a warning.
         events: Name -> formula or Event, with actions as of `simulate`, which the steps of "c", "fmu2", "fmu3" and
             "mex" look for and do; such an FMU has no Model Exchange, and events of units and "mex" end nothing. Of a
-            model.
+            model, whose own events are looked for, too, as in `simulate`.
 
     Returns:
         What was written, and notes on what the format lacks.
@@ -259,7 +260,7 @@ def _material(
     needs = (*stepping.method.family.functions, *reactions)
     if any(body.modes for body in system.beams):
         needs = (*needs, "beam_stiffness", "mass_matrix")
-    if events and system.switches:
+    if (events or system.events) and system.switches:
         needs = (*needs, "constraint", "frame_pose")
     described = Compilation(system)
     instants, constrained = described.has_instants, described.record.nc > 0
@@ -305,6 +306,7 @@ def _material(
             *states_note(record),
             *first.notes,
             *singular_start(interpreted, first.q),
+            *(events_note(system) if target not in EVENT_TARGETS else ()),
             *((_UNKNOWN_INSTANTS,) if instants and target not in _STEPPED else ()),
         ),
         event_plan(compilation, interpreted, events, c_name, target),

@@ -46,3 +46,8 @@ def limits_note(joints: Iterable[Joint], kept: Callable[[Joint], Collection[str]
 def listed(names: list[str]) -> str:
     """Names of a note: the first ones, and how many more there are."""
     return ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
+
+
+def events_note(system: System) -> tuple[str, ...]:
+    """Note on the events of a description, for targets without steps that look for them."""
+    return (f"events of the model are left out, and what they do: {listed([*system.events])}",) if system.events else ()

@@ -14,10 +14,10 @@ from symofros.expr.graph import Graph
 from symofros.expr.instants import instant_operands
 from symofros.expr.program import Program
 from symofros.generator.codegen.interpreted import FormulaInstants
-from symofros.mechanics.dynamics.formulas import stated_formulas
 from symofros.mechanics.kinematics.lowering import Lowering
 from symofros.mechanics.topology.formulas import stated_values, timed_values
 from symofros.mechanics.topology.tree import SpanningTree
+from symofros.mechanics.topology.user_formulas import stated_formulas
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import Rate
 from symofros.runtime.instants import Motion

@@ -19,10 +19,11 @@ from symofros.generator.codegen.effort import effort
 from symofros.generator.passes import run_passes
 from symofros.mechanics.dynamics.constraints.rows import retracted
 from symofros.mechanics.dynamics.equations import Equations
-from symofros.mechanics.dynamics.formulas import formula_program, stated_formulas
+from symofros.mechanics.dynamics.formulas import formula_program
 from symofros.mechanics.dynamics.functions import Methods, Request, form_program
 from symofros.mechanics.kinematics.links import tree_kinematics
 from symofros.mechanics.topology.tree import SpanningTree, coupled_speeds
+from symofros.mechanics.topology.user_formulas import stated_formulas
 
 # What a C text or a library holds where the options name no functions.
 _DEFAULT = (Request("dynamics"),)

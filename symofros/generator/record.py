@@ -4,17 +4,18 @@ from __future__ import annotations
 
 import hashlib
 import math
+from dataclasses import replace
 
+from symofros.base.events import Event
 from symofros.base.names import TIME
 from symofros.base.options import Options
-from symofros.description.constraints import AXES, Closure
+from symofros.description.constraints import AXES, Closure, acts_on_bodies
 from symofros.description.forces import Friction, Stop
 from symofros.description.system import System
 from symofros.description.values import Value, symbols
 from symofros.expr.expression import Expression, always_quoted, evaluate
 from symofros.mechanics.beams.theories import theory_of
 from symofros.mechanics.dynamics.constraints.measures import measures_of
-from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.kinematics.joint import neutral_coordinates
 from symofros.mechanics.topology.coordinates import angles, joint_sizes
 from symofros.mechanics.topology.formulas import stated_values
@@ -109,7 +110,23 @@ def model_record(tree: SpanningTree, options: Options) -> ModelRecord:
         sticking=_sticking(tree),
         rigid_contacts=_rigid_contacts(tree),
         state_names=names.states,
+        events={name: _as_texts(event) for name, event in tree.system.events.items()},
     )
+
+
+def _as_texts(event: Event) -> Event:
+    """An event of the description with its formulas as texts that nothing reads otherwise."""
+    rests, action = event.rests, event.action
+    return replace(
+        event,
+        formula=_text(event.formula),
+        action=None if action is None else {name: _set_to(value) for name, value in action.items()},
+        rests=None if rests is None else _text(rests),
+    )
+
+
+def _set_to(value: Value) -> str | float:
+    return _text(value) if isinstance(value, Expression) else value
 
 
 def _switches(tree: SpanningTree) -> tuple[SwitchRecord, ...]:

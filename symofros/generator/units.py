@@ -23,8 +23,9 @@ from symofros.generator.codegen.tape import tape_unit
 from symofros.generator.passes import run_passes
 from symofros.generator.programs import ProgramBuilder
 from symofros.generator.record import GENERATOR
-from symofros.mechanics.dynamics.formulas import formula_program, stated_formulas
+from symofros.mechanics.dynamics.formulas import formula_program
 from symofros.mechanics.dynamics.functions import Request
+from symofros.mechanics.topology.user_formulas import stated_formulas
 from symofros.native import native_text
 from symofros.runtime.background import BackgroundCompilation
 from symofros.runtime.build.build import build_library, known_library, recall_library

@@ -3,13 +3,15 @@
 from __future__ import annotations
 
 import math
-from dataclasses import dataclass, replace
+from collections.abc import Mapping
+from dataclasses import dataclass, field, replace
 from functools import cached_property
 from typing import Literal, NamedTuple
 
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.base.events import Event, Named
 from symofros.base.manifold import ManifoldKind
 from symofros.base.measures import Measures
 from symofros.errors import Problem, SymofrosError
@@ -211,6 +213,7 @@ class ModelRecord:
         sticking: Coordinates with friction that sticks.
         rigid_contacts: Balls of rigid contacts.
         state_names: States of forces, carried as the last speeds, each beside an idle coordinate, the last ones.
+        events: Name -> event that the description states, its formulas as texts.
     """
 
     name: str
@@ -248,6 +251,17 @@ class ModelRecord:
     sticking: tuple[StickingRecord, ...] = ()
     rigid_contacts: tuple[RigidContactRecord, ...] = ()
     state_names: tuple[str, ...] = ()
+    events: Mapping[str, Event] = field(default_factory=dict)
+
+    @property
+    def set_by_actions(self) -> Named:
+        """What actions of events may name."""
+        held = {
+            place: (switch.name, switch.engaged)
+            for switch in self.switches
+            for place in (*switch.rotation, *(at for _, at in switch.offsets))
+        }
+        return Named(self.par_names, self.q_names, self.v_names, held)
 
     @cached_property
     def quaternions(self) -> dict[str, tuple[int, ...]]:
@@ -346,6 +360,17 @@ class ModelRecord:
             method = "rodas4 or implicit_euler, which are implicit, dopri5 or rk4; or " if by_method else ""
             remedy = f"{method}a compliant contact: stiffness in place of restitution"
             raise _no_modes(f"{what}: rigid contact", found, f"{_CHOOSE}, by explicit and Rosenbrock methods", remedy)
+
+    def refuse_actions(self, what: str) -> None:
+        """Refuse events of the description that change the motion, where nothing looks for them.
+
+        Raises:
+            SymofrosError: There are some.
+        """
+        acting = [name for name, event in self.events.items() if event.acts or event.terminal]
+        if acting:
+            rule, remedy = "runs and steppers look for events", "leave them out: replace(system, events={})"
+            raise SymofrosError(Problem(f"{what}: events of model '{self.name}'", ", ".join(acting), rule, remedy))
 
     def refuse_states(self, what: str) -> None:
         """Refuse states of forces where nothing takes them.

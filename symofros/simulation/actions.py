@@ -12,12 +12,12 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.base.names import coordinate_of, speed_column, speed_of
-from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.base.events import Event
+from symofros.errors import Problem, SymofrosError
 from symofros.runtime.calls import Kernel
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
-from symofros.simulation.events import Event, ModeEvent
+from symofros.simulation.events import ModeEvent
 
 
 class Assignment(NamedTuple):
@@ -60,15 +60,10 @@ class StatedActions(NamedTuple):
             UnknownNameError: An action names no run-time parameter or speed.
             SymofrosError: An action sets one thing twice, or the pose that a constraint holds.
         """
-        assignments, values = list[Assignment](), list[Any]()
+        assignments, values, named = list[Assignment](), list[Any](), record.set_by_actions
         for i, event in enumerate(events):
-            for name, value in (event.action or {}).items():
-                place = Assignment(i, *_target(record, event, name))
-                if place in assignments:
-                    what, rule = f"event '{event.name}': its action sets '{name}' twice", "one value for each"
-                    raise SymofrosError(Problem(what, ", ".join(event.action or {}), rule, "leave one of them out"))
-                assignments.append(place)
-                values.append(value)
+            assignments += [Assignment(i, *place) for place in named.targets(event.name, event.action or {})]
+            values += (event.action or {}).values()
         engaged = (switch.engaged for switch in record.switches)
         breakaway = (one.breakaway for one in record.sticking)
         first_mode = sum(not isinstance(event, ModeEvent) for event in events)
@@ -138,37 +133,6 @@ def _wrong_formulas(model: Model, events: Sequence[Event]) -> Iterator[SymofrosE
         except SymofrosError as error:
             of = f"event '{event}', what its action sets '{name}' to"
             yield type(error)([replace(problem, what=f"{of}: {problem.what}") for problem in error.problems])
-
-
-def _target(record: ModelRecord, event: Event, name: str) -> tuple[str, int]:
-    """Group, "par" or "v", and index of what an action sets."""
-    if found := coordinate_of(name, record.par_names):
-        index = record.par_names.index(found)
-        _refuse_held(record, event, found, index)
-        return "par", index
-    if (
-        name in record.q_names
-    ):  # Of a joint with one coordinate that of its speed, too; in formulas it is the coordinate.
-        what, rule = f"event '{event.name}': its action sets the coordinate '{name}'", "an action moves nothing at once"
-        speed = f"its speed, '{speed_column(name, record.q_names)}'" if name in record.v_names else "speeds"
-        remedy = f"set {speed}, or a parameter"
-        raise UnknownNameError(Problem(what, f"'{name}' among coordinates", rule, remedy))
-    if found := speed_of(name, record.v_names):
-        return "v", record.v_names.index(found)
-    known = [*record.par_names, *record.v_names]
-    rule = "an action sets run-time parameters, and speeds: d and the coordinate's name, or the speed's own"
-    what = f"event '{event.name}': its action sets '{name}', which is no parameter or speed"
-    raise UnknownNameError(Problem(what, ", ".join(known[:12]) or "none", rule, did_you_mean(name, known)))
-
-
-def _refuse_held(record: ModelRecord, event: Event, name: str, index: int) -> None:
-    """Refuse to set the pose of the moment, which the constraint takes as it engages."""
-    for switch in record.switches:
-        if index in (*switch.rotation, *(place for _, place in switch.offsets)):
-            what = f"event '{event.name}': its action sets '{name}'"
-            rule = f"'{switch.name}' holds the pose of the moment in which it engages"
-            remedy = f"set what engages it, '{switch.engaged}'; or give the switch the stated pose"
-            raise SymofrosError(Problem(what, "the pose that a constraint holds", rule, remedy))
 
 
 def refuse_actions(events: Sequence[Event], what: str, remedy: str) -> None:

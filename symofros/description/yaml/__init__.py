@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from symofros.description.yaml.faults import placed_problems as placed_problems
+from symofros.description.yaml.faults import read_event as read_event
 from symofros.description.yaml.files import DIAGRAM as DIAGRAM
 from symofros.description.yaml.files import MAX_BYTES as MAX_BYTES
 from symofros.description.yaml.files import read_yaml as read_yaml
@@ -24,3 +25,4 @@ from symofros.description.yaml.yaml_output import value_text as value_text
 from symofros.description.yaml.yaml_output import yaml_text as yaml_text
 from symofros.description.yaml.yaml_pieces import compose as compose
 from symofros.description.yaml.yaml_pieces import compose_text as compose_text
+from symofros.description.yaml.yaml_writer import event_data as event_data

@@ -29,7 +29,7 @@ from symofros.description.yaml.fields import (
     Two,
     fault,
 )
-from symofros.errors import DescriptionError
+from symofros.errors import SymofrosError
 
 _TEXTS = ("unit", "description")
 _VECTOR = (Value, Value, Value)
@@ -107,7 +107,7 @@ class NounEntry(PartEntry):
         if self.checked:
             try:
                 self.build()
-            except DescriptionError as error:
+            except SymofrosError as error:
                 raise fault(error.problem) from None
         return self
 

@@ -10,6 +10,7 @@ from typing import Any
 
 from pydantic import ValidationError
 
+from symofros.base.events import Event
 from symofros.base.names import rate_symbol, symbol_of
 from symofros.base.sources import Source
 from symofros.description.constraints import Constraint, Coupling, Switch
@@ -44,6 +45,7 @@ _SECTIONS = {
     "couplings": "constraint",
     "nonholonomic": "constraint",
     "switches": "switch",
+    "events": "event",
 }
 _SUFFIXES = ("px", "py", "pz", "qx", "qy", "qz", "qw", "vx", "vy", "vz", "wx", "wy", "wz")
 
@@ -86,6 +88,7 @@ class _Merger:
     constraints: list[Constraint] = field(default_factory=list)
     switches: list[Switch] = field(default_factory=list)
     states: list[ForceState] = field(default_factory=list)
+    events: dict[str, Event] = field(default_factory=dict)
     origin: dict[tuple[str, ...], str] = field(default_factory=dict)
     problems: list[Problem] = field(default_factory=list)
     broken: set[str] = field(default_factory=set)
@@ -115,6 +118,7 @@ class _Merger:
             origin=self.origin,
             switches=tuple(self.switches),
             states=tuple(self.states),
+            events=self.events,
         )
         return Reading(system, problems, broken, self.all_sources())
 
@@ -262,6 +266,7 @@ class _Merger:
         self.constraints += [Coupling(name, residual) for name, residual in fresh("couplings")]
         self.constraints += [condition.build(name) for name, condition in fresh("nonholonomic")]
         self.switches += [switch.build(constraint=name) for name, switch in fresh("switches")]
+        self.events |= {name: event.build(name=name) for name, event in fresh("events")}
 
     def is_new(self, section: str, name: str, root: Node, shown: str) -> bool:
         """Record where a named thing stands; whether no other file has one of that name."""

@@ -39,6 +39,7 @@ from symofros.description.yaml.fields import (
 )
 from symofros.description.yaml.schema_beam import BeamEntry
 from symofros.description.yaml.schema_constraints import ClosureEntry, NonholonomicEntry, SwitchEntry
+from symofros.description.yaml.schema_events import ShortEvent
 from symofros.description.yaml.schema_forces import ConnectionEntry, ContactEntry, ElementEntry, LoadEntry, RotorEntry
 from symofros.description.yaml.schema_solid import SolidEntry
 from symofros.errors import Problem
@@ -193,6 +194,8 @@ class NativeFile(Entry):
     """Conditions on speeds."""
     switches: Annotated[dict[Name, SwitchEntry], Field(max_length=10_000)] | None = None
     """When constraints hold: for each that can be released, by its name."""
+    events: Annotated[dict[Name, ShortEvent], Field(max_length=10_000)] | None = None
+    """What runs look for, and do there: for each a formula whose zeros count, or a mapping."""
     options: Reserved = None
 
 

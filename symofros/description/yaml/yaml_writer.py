@@ -3,13 +3,14 @@
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterator
+from collections.abc import Iterator, Mapping
 from dataclasses import fields
 from typing import Any
 
 from pydantic import ValidationError
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
+from symofros.base.events import Event
 from symofros.description.beams.beam import Beam
 from symofros.description.constraints import (
     AXES,
@@ -43,6 +44,7 @@ from symofros.description.yaml.schema import (
 )
 from symofros.description.yaml.schema_beam import BeamEntry, BeamLoadEntry, SamplesEntry
 from symofros.description.yaml.schema_constraints import KnifeEdgeEntry, RollingEntry, SwitchEntry
+from symofros.description.yaml.schema_events import EventEntry
 from symofros.description.yaml.schema_forces import (
     ELEMENTS,
     ConnectionEntry,
@@ -75,6 +77,7 @@ _OPEN = frozenset(
         "couplings",
         "nonholonomic",
         "switches",
+        "events",
         "virtual_power",
         "potentials",
         "states",
@@ -147,7 +150,19 @@ def _document(system: System) -> Plain:
         section, entry = _constraint(item)
         document.setdefault(section, {})[item.name] = entry
     document["switches"] = {item.constraint: _entry(SwitchEntry, item) for item in system.switches}
+    document["events"] = {name: _event(event) for name, event in system.events.items()}
     return {section: entries for section, entries in document.items() if entries}
+
+
+def _event(event: Event) -> Any:
+    """Its formula alone where there is nothing else to say."""
+    entries = _entry(EventEntry, event)
+    return entries["formula"] if len(entries) == 1 else entries
+
+
+def event_data(event: Event) -> Any:
+    """An event as plain data, for files of other kinds that state some: formulas are texts."""
+    return _spelled(_event(event), [], frozenset())
 
 
 def _entry(entry: type[NounEntry], noun: Any) -> Plain:
@@ -168,6 +183,8 @@ def _plain(value: Any) -> Any:
         return {value.kind: [values[:3], values[3:6], values[6:]] if value.kind == "matrix" else values}
     if isinstance(value, tuple):
         return [_plain(item) for item in value]
+    if isinstance(value, Mapping):
+        return {key: _plain(item) for key, item in value.items()}
     for name, entry in ELEMENTS.items():
         if isinstance(value, entry.noun):
             return {name: _entry(entry, value)}

@@ -8,7 +8,7 @@ from pathlib import Path
 from typing import Any
 
 from symofros.description import resolved
-from symofros.description.yaml import Node
+from symofros.description.yaml import Node, YamlFault
 from symofros.diagrams.block import Block
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.entries import Entries
@@ -123,6 +123,11 @@ class BlockReader(Entries):
                     error.rule,
                     f"see the fields of {kind}",
                 )
+            except YamlFault as error:
+                inside = [
+                    replace(one, what=f"{what}: {one.what}", where=f"{self.file}{one.where}") for one in error.problems
+                ]
+                self.take(item, inside)
             except SymofrosError as error:
                 self.take(item, [replace(one, what=f"{what}: {key}: {one.what}") for one in error.problems])
             except (ValueError, TypeError) as error:

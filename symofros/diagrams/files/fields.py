@@ -10,7 +10,8 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from symofros.description.yaml import Node
+from symofros.base.events import Event
+from symofros.description.yaml import Node, event_data, read_event
 
 MISSING = dataclasses.MISSING
 # A field of blocks that run native code of files: who reads a diagram consents, no file does.
@@ -75,6 +76,7 @@ def read(kind: Any, node: Node) -> Any:
 
     Raises:
         Misfit: The node is not of that type.
+        YamlFault: An event is none.
     """
     origin, arguments, value = get_origin(kind), get_args(kind), node.value
     if kind is Any or _is_array(kind):
@@ -90,6 +92,8 @@ def read(kind: Any, node: Node) -> Any:
     if origin is not None and _is_a(origin, Mapping):
         if not isinstance(value, dict):
             raise Misfit(node, words_for(kind))
+        if Event in get_args(arguments[1]):
+            return {key: None if item.value is None else read_event(key, item) for key, item in value.items()}
         return {key: read(arguments[1], item) for key, item in value.items()}
     if dataclasses.is_dataclass(kind) and isinstance(kind, type):
         return _object(kind, node)
@@ -173,6 +177,8 @@ def write(value: Any) -> Any:
         return [write(item) for item in value]
     if isinstance(value, Mapping):
         return {str(key): write(item) for key, item in value.items()}
+    if isinstance(value, Event):
+        return write(event_data(value))
     if dataclasses.is_dataclass(value) and not isinstance(value, type):
         return {item.name: write(getattr(value, item.name)) for item in dataclasses.fields(value)}
     if isinstance(value, float):

@@ -12,6 +12,8 @@ from pathlib import Path
 from types import NoneType, UnionType
 from typing import Any, Literal, Union, get_args, get_origin
 
+from symofros.base.events import Event
+from symofros.description.yaml import json_schema as native_schema
 from symofros.diagrams.block import Block
 from symofros.diagrams.conditional import Condition
 from symofros.diagrams.files.fields import MISSING, required, types_of, words_for, write
@@ -55,6 +57,8 @@ def of_type(kind: Any) -> Plain:
         return {"type": "array", "prefixItems": [of_type(item) for item in arguments], "items": False}
     if isinstance(origin, type) and issubclass(origin, Mapping):
         return {"type": "object", "additionalProperties": of_type(arguments[1])}
+    if kind is Event:  # As native files state it.
+        return {"$ref": "#/$defs/EventEntry"}
     if dataclasses.is_dataclass(kind) and isinstance(kind, type):
         return _object(_described(kind), sorted(required(kind)))
     return {"description": words_for(kind)}
@@ -85,8 +89,17 @@ def json_schema() -> Plain:
         "$schema": "https://json-schema.org/draft/2020-12/schema",
         "title": "A SYMOFROS diagram",
         **_object({HEAD: {"const": VERSION}, **sections, "simulation": _settings()}, [HEAD]),
-        "$defs": {**blocks, "part": _object(part) | {"oneOf": [{"required": ["file"]}, {"required": ["diagram"]}]}},
+        "$defs": {
+            **_native("EventEntry", "Formula"),
+            **blocks,
+            "part": _object(part) | {"oneOf": [{"required": ["file"]}, {"required": ["diagram"]}]},
+        },
     }
+
+
+def _native(*names: str) -> Plain:
+    """Definitions of the schema of native files."""
+    return {name: native_schema()["$defs"][name] for name in names}
 
 
 def _block(kind: str, owner: type[Block]) -> Plain:

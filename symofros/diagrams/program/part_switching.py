@@ -9,11 +9,12 @@ from collections.abc import Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import NamedTuple
 
+from symofros.base.events import Event
 from symofros.diagrams.program.layout import Layout, Part
 from symofros.diagrams.program.lowered_block import Piece
 from symofros.runtime.record import RigidContactRecord, StickingRecord, SwitchRecord
 from symofros.simulation.actions import Assignment, StatedActions
-from symofros.simulation.events import Event, ModeEvent
+from symofros.simulation.events import ModeEvent
 
 
 class CrossingEvent(Event):

@@ -5,17 +5,18 @@ They are those of `sf.simulate` (docs/theory/diagrams.md, section 9).
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 from typing import Any, NamedTuple
 
+from symofros.base.events import Event, with_stated
 from symofros.diagrams.block import Block, EvaluationContext
 from symofros.diagrams.program.model_environment import Models
 from symofros.diagrams.tensor import Tensor
 from symofros.errors import DescriptionError, Problem, SymofrosError
 from symofros.runtime.record import ModelRecord
 from symofros.simulation.actions import StatedActions
-from symofros.simulation.events import Event, mode_events, named_events
+from symofros.simulation.events import mode_events, named_events
 
 
 @dataclass(frozen=True)
@@ -63,15 +64,18 @@ def switching_of(models: Models, block: Block, at: EvaluationContext) -> Switchi
     """
     model = block.mechanism()
     record = models.carried(model) if model else None
-    if record is None or not (block.mechanism_events() or record.sticking or record.rigid_contacts):
+    if record is None:
         return None
-    if block.lock_inputs():
-        raise DescriptionError(_said_twice(block, record))
-    events = (*named_events(block.mechanism_events()), *mode_events(record))
     try:
+        stated_events = with_stated(record.events, block.mechanism_events())
+        events = (*named_events(stated_events), *mode_events(record))
         stated = StatedActions.of(record, events)
     except SymofrosError as error:
         raise DescriptionError(_of_block(block, error)) from None
+    if not events:
+        return None
+    if block.lock_inputs():
+        raise DescriptionError(_said_twice(block, record, stated_events))
     u = at.inputs["u"]
     given = {"q": at.q, "v": at.v, "u": u, "t": at.t, "a": at.a, "lam": at.lam}
     formulas = _Formulas(models, model, block, at, given)
@@ -94,10 +98,10 @@ def switching_of(models: Models, block: Block, at: EvaluationContext) -> Switchi
     return Switching(record, events, stated, values, effects, poses, contacts, tuple(sorted(kept)))
 
 
-def _said_twice(block: Block, record: ModelRecord) -> Problem:
+def _said_twice(block: Block, record: ModelRecord, events: Collection[str]) -> Problem:
     """Whether constraints hold is said by an input and by what has modes of its own."""
-    found = "events"
-    if not block.mechanism_events():
+    found = f"events: {', '.join(events)}"
+    if not events:
         sticks = record.sticking
         found = (
             f"friction of '{sticks[0].name}' sticks"

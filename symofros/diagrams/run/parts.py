@@ -9,6 +9,7 @@ from dataclasses import dataclass, replace
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.base.events import Event
 from symofros.diagrams.program.compiled import CompiledDiagram, Resolved
 from symofros.diagrams.program.layout import Part
 from symofros.diagrams.run.examination.faults import fault_at
@@ -16,7 +17,6 @@ from symofros.diagrams.run.starts import Start, changes_of_driven, close_loops, 
 from symofros.errors import AssemblyError, Problem, SymofrosError
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.beam_theory import refuse_beyond
-from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.results.ends import ENDS
 from symofros.simulation.settings import CLOSED, Settings

@@ -7,15 +7,16 @@ from dataclasses import dataclass, field
 from typing import Any
 
 from symofros.base.c_text import doubles, integers, strings
+from symofros.base.events import Event
 from symofros.compiler import Compilation
 from symofros.errors import ExportError, Problem
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord, SwitchRecord
 from symofros.simulation.actions import StatedActions, places_of, plan_actions
-from symofros.simulation.events import Event, events_of, opens_of
+from symofros.simulation.events import events_of, named_events, opens_of
 
 # Targets whose steps look for events.
-_TARGETS = ("c", "fmu2", "fmu3", "mex", "wasm")
+TARGETS = ("c", "fmu2", "fmu3", "mex", "wasm")
 
 
 @dataclass(frozen=True)
@@ -47,13 +48,16 @@ def event_plan(
         ExportError: The target has no steps of its own, or can't end where an event does.
         SymofrosError: An action can't be done.
     """
-    if target not in _TARGETS:
+    if target not in TARGETS:
         model.record.refuse_sticking(f"export: '{target}'")
         model.record.refuse_rigid_contacts(f"export: '{target}'")
+        _refuse(named_events(given), target)
+        return None  # Those of the description are left out, with a note.
     events = events_of(model, given)
     if not events:
         return None
-    _refuse(events, target)
+    if target != "c":
+        refuse_ends(events)
     actions = plan_actions(model, events)
     model.formulas([event.formula for event in events], derivatives=False, reactions=True)  # Refuses what is none.
     sources: dict[str, Sequence[Any]] = {
@@ -70,12 +74,10 @@ def event_plan(
 
 
 def _refuse(events: Sequence[Event], target: str) -> None:
-    if target not in _TARGETS:
-        what, rule = f"export: '{target}' looks for no events", f"events are of {', '.join(_TARGETS)}"
+    if events:
+        what, rule = f"export: '{target}' looks for no events", f"events are of {', '.join(TARGETS)}"
         remedy = "leave `events` out, and look for them in the host; or take one of these targets"
         raise ExportError(Problem(what, ", ".join(event.name for event in events), rule, remedy))
-    if target != "c":
-        refuse_ends(events)
 
 
 def refuse_ends(events: Iterable[Event]) -> None:
@@ -90,7 +92,8 @@ def refuse_ends(events: Iterable[Event]) -> None:
             f"export: event '{ending[0]}' ends the motion",
             "callers decide when the motion of an FMU or a MEX function ends",
         )
-        raise ExportError(Problem(what, "terminal=True", rule, "an action, such as one that locks what moves"))
+        remedy = "an action, such as one that locks what moves; or events={'NAME': None}, which leaves it out"
+        raise ExportError(Problem(what, "terminal=True", rule, remedy))
 
 
 def planned(

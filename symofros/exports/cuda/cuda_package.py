@@ -14,7 +14,7 @@ from symofros.compiler import GENERATOR, Compilation
 from symofros.description import System
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.functions import NamedFunction, cell, functions_table, names_table, states_note
-from symofros.exports.limits import joints_of, limits_note
+from symofros.exports.limits import events_note, joints_of, limits_note
 from symofros.generator import DeviceCode
 from symofros.native import header_files, native_text
 from symofros.runtime.calls import Precision
@@ -90,7 +90,7 @@ def write_cuda_package(system: System, name: str | None, frames: Sequence[str] |
 
 def _notes(made: Compilation, left_out: Sequence[str]) -> tuple[str, ...]:
     """Notes on what kernels and rollouts leave out: limits, functions without kernels, bending of beams, instants."""
-    notes = [*limits_note(joints_of(made.system)), *states_note(made.record)]
+    notes = [*limits_note(joints_of(made.system)), *states_note(made.record), *events_note(made.system)]
     if left_out:
         notes.append(
             f"no kernels of {', '.join(left_out)}: a routine with pivots finishes them; they are in the C file"

@@ -17,7 +17,7 @@ from symofros.exports.folder import Exported, write_folder
 from symofros.exports.interchange.couplings import DEGREE, PolynomialCoupling, polynomial_couplings
 from symofros.exports.interchange.joint_series import GatheredBody, JointPlace, gathered
 from symofros.exports.interchange.rigid import RigidLink, numbers_text, rigid_links
-from symofros.exports.limits import limits_note, listed, measures
+from symofros.exports.limits import events_note, limits_note, listed, measures
 from symofros.mechanics.topology import Numbers
 
 # Of a moment of inertia, of the largest one or of 1 kg m^2; MuJoCo's own bound is 1e-14.
@@ -39,7 +39,7 @@ def write_mjcf(system: System, name: str | None, folder: Path, generator: str) -
     Tree.SubElement(root, "option", {"gravity": numbers_text(numbers.values(system.gravity))})
     elements = {links[0].name: Tree.SubElement(root, "worldbody")}
     _sites(elements[links[0].name], links[0])
-    notes = [*lost, *_lost(links, numbers)]
+    notes = [*lost, *_lost(links, numbers), *events_note(system)]
     thin = [link.name for link in links if link.mass and _positive(link.inertia) is not link.inertia]
     odd = [link.name for link in links if link.mass and _impossible(_positive(link.inertia))]
     if odd:

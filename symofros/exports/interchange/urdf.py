@@ -15,7 +15,7 @@ from symofros.description import Damper, Joint, JointElement, Limits, System, fr
 from symofros.exports.folder import Exported, write_folder
 from symofros.exports.interchange.couplings import PolynomialCoupling, polynomial_couplings
 from symofros.exports.interchange.rigid import Axis, RigidLink, numbers_text, rigid_links
-from symofros.exports.limits import MEASURES, limits_note, listed, measures
+from symofros.exports.limits import MEASURES, events_note, limits_note, listed, measures
 from symofros.mechanics.topology import Numbers
 
 # URDF wants both bounds of a slide, effort and speed wherever one of them is stated; these bind nothing.
@@ -40,7 +40,7 @@ def write_urdf(system: System, name: str | None, folder: Path, generator: str) -
     Tree.indent(root)
     text = f'<?xml version="1.0"?>\n{Tree.tostring(root, encoding="unicode")}\n'
     called = identifier(name or system.name)
-    notes = (*lost, *_lost(system, {mimic.name for mimic in mimics.values()}))
+    notes = (*lost, *_lost(system, {mimic.name for mimic in mimics.values()}), *events_note(system))
     return write_folder(folder, "urdf", called, {f"{called}.urdf": text}, generator, notes)
 
 

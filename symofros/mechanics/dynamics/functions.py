@@ -9,13 +9,13 @@ from typing import Any, NamedTuple
 
 from symofros.base.functions import FUNCTIONS, INPUTS, ModelFunction, OutputArray, size_of
 from symofros.base.routes import Choice, choose, taken
+from symofros.description.constraints import acts_on_bodies
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.instants import operands_function
 from symofros.expr.program import Function, Output, Program, Solver
 from symofros.expr.substitute import substitute
 from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.rows import retracted
-from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.dynamics.derivatives.adjoints import weighted_derivatives
 from symofros.mechanics.dynamics.derivatives.hessians import hessian, stacked
 from symofros.mechanics.dynamics.derivatives.responses import changes_tables

@@ -11,28 +11,14 @@ input of such a name is meant first.
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Iterator
+from collections.abc import Iterable
 
+from symofros.description.constraints import acts_on_bodies
 from symofros.expr.edges import Edge
-from symofros.mechanics.dynamics.constraints.wrenches import acts_on_bodies
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.topology.rigid_contacts import QUANTITIES
-from symofros.mechanics.topology.tree import SpanningTree, ball_names, joint_names
-
-COMPONENTS = ("fx", "fy", "fz", "mx", "my", "mz")
-
-
-def reaction_symbols(tree: SpanningTree) -> frozenset[str]:
-    """All names of multipliers, wrenches and reactions of a mechanism."""
-    constraints = tree.system.constraints
-    multipliers = (f"lam.{condition}" for constraint in constraints for condition in constraint.conditions)
-    names = (*_six("wrench", acts_on_bodies(constraints)), *_six("reaction", joint_names(tree)))
-    return frozenset((*multipliers, *names))
-
-
-def contact_symbols(tree: SpanningTree) -> frozenset[str]:
-    """All names of distances and velocities of the balls of contacts."""
-    return frozenset(f"contact.{ball}.{quantity}" for ball in ball_names(tree) for quantity in QUANTITIES)
+from symofros.mechanics.topology.tree import ball_names, joint_names
+from symofros.mechanics.topology.user_formulas import COMPONENTS, contact_symbols, reaction_symbols
 
 
 def bind_contacts(equations: Equations, used: Iterable[str]) -> None:
@@ -75,7 +61,3 @@ def _reaction(equations: Equations, name: str) -> Edge:
     if group == "wrench":
         return equations.wrenches_on_second[acts_on_bodies(system.constraints).index(of)][column]
     return equations.joint_wrenches[joint_names(equations.tree).index(of)][column]
-
-
-def _six(group: str, names: Iterable[str]) -> Iterator[str]:
-    return (f"{group}.{name}.{component}" for name in names for component in COMPONENTS)

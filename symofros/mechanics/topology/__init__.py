@@ -9,9 +9,9 @@ from symofros.mechanics.topology.coordinates import coordinate_symbols as coordi
 from symofros.mechanics.topology.coordinates import joint_units as joint_units
 from symofros.mechanics.topology.coordinates import motion_symbols as motion_symbols
 from symofros.mechanics.topology.coordinates import speed_symbols as speed_symbols
+from symofros.mechanics.topology.events import find_problems as find_problems
 from symofros.mechanics.topology.frames import full_names as full_names
 from symofros.mechanics.topology.frames import public_names as public_names
-from symofros.mechanics.topology.graph import find_problems as find_problems
 from symofros.mechanics.topology.numbers import Numbers as Numbers
 from symofros.mechanics.topology.physics import OTHER_FUNCTIONS as OTHER_FUNCTIONS
 from symofros.mechanics.topology.physics import moments_about_center as moments_about_center

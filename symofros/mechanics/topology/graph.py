@@ -50,13 +50,13 @@ def check(system: System) -> None:
     Raises:
         DescriptionError: With every problem found.
     """
-    problems = find_problems(system)
+    problems = description_problems(system)
     if problems:
         raise DescriptionError(problems)
 
 
-def find_problems(system: System, broken: Collection[str] = ()) -> list[Problem]:
-    """Every problem of a description.
+def description_problems(system: System, broken: Collection[str] = ()) -> list[Problem]:
+    """Every problem of a description but those of its events.
 
     Args:
         system: The system as described.
@@ -152,6 +152,7 @@ class _Checker:
         yield from (("parameter", item.name) for item in self.system.parameters)
         yield from (("input", item.name) for item in self.system.inputs)
         yield from (("state", item.name) for item in self.system.states)
+        yield from (("event", name) for name in self.system.events)
         for body in self.system.bodies:
             yield "body", body.name
             for frame in body.frames:

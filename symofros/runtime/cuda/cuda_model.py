@@ -250,6 +250,7 @@ class CudaModel:
             ShapeError: An input does not fit, steps or the step are none, or a quaternion of q is no rotation.
             SymofrosError: The model has constraints, or there is no graphics processor; or a graph is captured.
         """
+        self.record.refuse_actions("CUDA: rollout")
         code = self.code("forward_dynamics")
         if method not in code.rollouts:
             known = tuple(code.rollouts)

@@ -259,6 +259,7 @@ def rollout(
     """
     model.record.refuse_rigid_contacts("rollout")
     model.record.refuse_sticking("rollout")
+    model.record.refuse_actions("rollout")
     if model.carried is not model:
         model.record.refuse_states("rollout, which is of `model.carried`")
     model = model.with_precision("double")

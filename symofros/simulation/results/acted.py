@@ -7,11 +7,12 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.base.events import Event
 from symofros.errors import Problem, SymofrosError
 from symofros.native import native_number
 from symofros.runtime.model import Model
 from symofros.runtime.record import STICKS
-from symofros.simulation.events import Event, ModeEvent
+from symofros.simulation.events import ModeEvent
 from symofros.simulation.results.ends import ENDS, INTERRUPTED
 from symofros.simulation.results.engaging import engaged_apart, engaging_notes
 from symofros.simulation.results.outcome import Outcome

@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import Array
+from symofros.base.events import Event
 from symofros.runtime.calls import together
 from symofros.runtime.model import Model
 from symofros.simulation.batch_inputs import BatchInputs
-from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.batch_stepper import SLOTS, BatchResults, BatchStepper, InitialStates, lines

@@ -13,11 +13,11 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import Array
+from symofros.base.events import Event
 from symofros.errors import CompileError
 from symofros.runtime.calls import CompiledKernel, LaneOptions
 from symofros.runtime.model import Model
 from symofros.simulation.batch_inputs import BatchInputs
-from symofros.simulation.events import Event
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.by_hand import AHEAD
 from symofros.simulation.stepping.met import Met

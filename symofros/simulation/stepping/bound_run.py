@@ -9,12 +9,13 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.base.events import Event
 from symofros.errors import CompileError, Problem, SymofrosError
 from symofros.runtime.calls import CompiledKernel, Kernel, NativeMemory, constants, native_library
 from symofros.runtime.model import Model
 from symofros.runtime.record import HELD
 from symofros.simulation.actions import Actions, plan_actions
-from symofros.simulation.events import Event, opens_of
+from symofros.simulation.events import opens_of
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.tableaus import fill_tableau

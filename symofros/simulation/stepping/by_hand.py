@@ -11,10 +11,10 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import Array
+from symofros.base.events import Event
 from symofros.native import native_number
 from symofros.runtime.calls import constants
 from symofros.runtime.model import Model
-from symofros.simulation.events import Event
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.met import Met

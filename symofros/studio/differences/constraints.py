@@ -1,4 +1,4 @@
-"""Constraints of two mechanisms: which of one has no equal among the other's."""
+"""Constraints of two mechanisms, when they hold, and events: which of one has no equal among the other's."""
 
 from __future__ import annotations
 
@@ -8,7 +8,7 @@ from dataclasses import fields, replace
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.description import Closure, Constraint, Coupling, Rod, symbols
+from symofros.description import Closure, Constraint, Coupling, Rod, event_text, symbols
 from symofros.mechanics.topology import coordinate_symbols
 from symofros.studio.differences.difference import Difference
 from symofros.studio.differences.findings import Findings
@@ -37,6 +37,18 @@ def constraint_differences(found: Findings) -> Iterator[Difference]:
         yield Difference(f"constraint '{constraint.name}'", "", "", _stated(constraint), there, ("constraints",))
     for item in theirs:
         yield Difference(f"constraint '{item.name}'", "", "", "no such constraint", _stated(item), ("constraints",))
+
+
+def switching_differences(found: Findings) -> Iterator[Difference]:
+    """Switches of constraints, and events, that one states and the other does not, or otherwise."""
+    systems = found.a.system, found.b.system
+    switches = [{one.constraint: f"{one.engaged}, pose {one.pose}" for one in system.switches} for system in systems]
+    events = [{name: event_text(event) for name, event in system.events.items()} for system in systems]
+    for kind, changes, (ours, theirs) in (("switch of", "constraints", switches), ("event", "events", events)):
+        for name in ours | theirs:
+            here, there = (of.get(name, f"no such {kind.removesuffix(' of')}") for of in (ours, theirs))
+            if here != there:
+                yield Difference(f"{kind} '{name}'", "", "", here, there, (changes,))
 
 
 def _blame_coordinates(found: Findings, constraint: Constraint) -> bool:

@@ -15,7 +15,7 @@ from symofros.errors import ArgumentError, DescriptionError, Problem
 from symofros.exports.limits import listed
 from symofros.loading import applicable, load
 from symofros.mechanics.topology import find_problems
-from symofros.studio.differences.constraints import constraint_differences
+from symofros.studio.differences.constraints import constraint_differences, switching_differences
 from symofros.studio.differences.difference import Difference
 from symofros.studio.differences.findings import MOST_DIFFERENCES, POSTURES, Findings
 from symofros.studio.differences.mechanism import Mechanism
@@ -210,7 +210,7 @@ def compare(
         raise ArgumentError(Problem("diff: unusable tolerance", f"{tolerance:g}", rule, remedy))
     a, b = (Mechanism(system, name) for system, name in zip((first, second), names, strict=True))
     found = Findings(a, b, tolerance, seed=0)
-    differences = [*found.differences, *constraint_differences(found)]
+    differences = [*found.differences, *constraint_differences(found), *switching_differences(found)]
     if not any(item.is_mechanical for item in differences):  # Silence would say that they are the same.
         wrong = tuple(name for name, error in found.errors.items() if error > 1e3 * tolerance)
         wrong = wrong if found.complete else ("kinematics", "M", "g")

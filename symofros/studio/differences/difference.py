@@ -31,7 +31,7 @@ class Difference:
         here: Value in the first file.
         there: Value in the second file.
         changes: What it changes: of "kinematics", "M", "g", "constraints", "coordinates", "limits", "dissipation",
-            "springs"; empty for nothing that can be observed.
+            "springs", "events"; empty for nothing that can be observed.
         names: Names of link and joint in the second file.
         places: "file:line" of the link or joint in both files, where they are known.
         likelier: Which file is likelier right: 0, 1; None where neither is.

@@ -284,8 +284,6 @@ def _uncompared(system: System) -> Iterator[str]:
     }
     if any(odd.values()):
         yield "elements of joints: " + listed([f"{name} ({', '.join(kinds)})" for name, kinds in odd.items() if kinds])
-    if system.switches:
-        yield "when constraints hold: " + listed([switch.constraint for switch in system.switches])
 
 
 def _is_odd(element: JointElement) -> bool:

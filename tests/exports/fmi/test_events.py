@@ -11,6 +11,7 @@ import pytest
 from fmpy.simulation import instantiate_fmu
 
 import symofros as sf
+from reference_models import MODELS
 from tests.diagrams.run.test_switching import CASES
 from tests.exports.c.test_events import BALL, STRIKE
 from tests.exports.c.test_rigid_contacts import SCENES, first
@@ -40,6 +41,20 @@ def test_a_ball_moves_in_co_simulation_as_in_a_run(
     assert met == "strike" or abs(done["q.z"][50]) < 1e-12
     assert done["q.z"][-1] == pytest.approx(run.q[-1, 0], abs=bound)
     assert done["v.z"][-1] == pytest.approx(run.v[-1, 0], abs=10 * bound)
+
+
+def test_units_act_as_their_description_states(tmp_path: Path) -> None:
+    """A part slips from a hand, and a rope catches it."""
+    system = MODELS["docking"]
+    first = dict(zip(sf.compile(system).names.q, sf.assemble(sf.compile(system)).q.tolist(), strict=True))
+    unit = str(exported(system, 3, tmp_path, start=first))
+    said = fmpy.read_model_description(unit)
+    names = [variable.name for variable in said.modelVariables if variable.name.startswith("q.")]
+    assert said.modelExchange is None and len(names) == len(first)
+    done = fmpy.simulate_fmu(unit, stop_time=2.4, output_interval=0.01, output=names)
+    run = sf.simulate(sf.compile(system), first, t_end=2.4, dt=1e-3, method="rk4")
+    assert {"slips", "catches"} < {found.name for found in run.events}
+    assert [done[name][-1] for name in names] == pytest.approx(run.q[-1], abs=1e-9)
 
 
 @pytest.mark.parametrize("version", [2, 3])

@@ -8,7 +8,8 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.mechanics.topology.graph import check, find_problems
+from symofros.mechanics.topology.events import find_problems
+from symofros.mechanics.topology.graph import check
 
 SOLID = sf.Inertia(1.0, (0, 0, 0), (1, 1, 1))
 

@@ -2,9 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterable, Sequence
+from collections.abc import Sequence
 
-from symofros.description.constraints import BETWEEN_FRAMES, BY_FORMULA, Constraint
+from symofros.description.constraints import BETWEEN_FRAMES, BY_FORMULA
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Vec3
@@ -17,11 +17,6 @@ from symofros.mechanics.topology.tree import BASE, frame_of
 
 # Force and moment about a frame's origin, in world axes (6).
 FrameWrench = tuple[Edge, ...]
-
-
-def acts_on_bodies(constraints: Iterable[Constraint]) -> list[str]:
-    """Names of the constraints with a wrench: all but conditions by formula, which know no bodies."""
-    return [constraint.name for constraint in constraints if not isinstance(constraint, BY_FORMULA)]
 
 
 def closure_wrenches(frames: FrameKinematics, rows: Sequence[Row]) -> tuple[list[FrameWrench], list[FrameWrench]]:
