@@ -12,7 +12,6 @@ from types import MappingProxyType
 from typing import Any, Literal
 
 from symofros.base.arguments import entries_of, shown
-from symofros.base.events import Event
 from symofros.description.beams.beam import Beam
 from symofros.description.beams.segments import SegmentAnchors, segment_names, segments_of
 from symofros.description.constraints import Constraint, Switch, section_order
@@ -211,7 +210,7 @@ class System:
     visuals: Mapping[str, tuple[Visual, ...]] = field(default_factory=dict, compare=False, repr=False)
     switches: tuple[Switch, ...] = ()
     states: tuple[ForceState, ...] = ()
-    events: Mapping[str, Event] = field(default_factory=dict, hash=False, repr=False)
+    events: Mapping[str, Any] = field(default_factory=dict, hash=False, repr=False)
 
     def __post_init__(self) -> None:
         """Freeze the collections and convert the gravity."""

@@ -11,6 +11,7 @@ import pytest
 
 import symofros as sf
 from symofros.blocks import Constant, ForwardDynamics, Hold, Sequence
+from symofros.description.events import as_events
 from symofros.diagrams.block import Crossing
 from tests.simulation.mechanisms import loop, slide
 from tests.simulation.rigid_scenes import ball_system, box_system, in_shell
@@ -362,7 +363,7 @@ def test_events_stand_in_files(tmp_path: Any) -> None:
     of = diagram(CASES["bounce"])
     sf.save_diagram(of, tmp_path / "bounce.yaml")
     again = sf.load_diagram(tmp_path / "bounce.yaml")
-    assert again.blocks["plant"].events == of.blocks["plant"].events
+    assert as_events(again.blocks["plant"].events) == as_events(of.blocks["plant"].events)
     one, other = (sf.Simulation(each).run(1.0, dt=1e-2) for each in (of, again))
     assert np.array_equal(one["plant.q"], other["plant.q"]) and one.events["plant"]
 

@@ -69,7 +69,7 @@ def test_batches_and_steppers_act_as_runs_do() -> None:
 @pytest.mark.parametrize("target", ["c", "mex", "sfunction"])
 def test_exported_texts_are_those_by_argument(tmp_path: Path, target: Target) -> None:
     """Every file; S-functions, which look for no events, say so."""
-    given = {} if target == "sfunction" else {"events": GIVEN}
+    given: dict[str, Any] = {} if target == "sfunction" else {"events": GIVEN}
     written = sf.export(STATED, target, tmp_path / "stated", start=START)
     other = sf.export(BARE, target, tmp_path / "bare", start=START, **given)
     note = "events of the model are left out, and what they do: slips, catches, turns"
