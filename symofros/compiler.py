@@ -127,9 +127,11 @@ class Compilation:
 
     def __init__(self, system: System, options: Options | None = None) -> None:
         if not isinstance(system, System):
-            remedy = (
-                f"sf.compile(sf.load({str(system)!r:.60}))" if isinstance(system, str | Path) else "build a sf.System"
-            )
+            remedy = "build a sf.System"
+            if isinstance(system, str | Path):
+                remedy = f"sf.compile(sf.load({str(system)!r:.60}))"
+            elif isinstance(system, Model):
+                remedy = "give the sf.System that the model was compiled from"
             stated = f"{type(system).__name__} {system!r:.60}"
             raise DescriptionError(Problem("there is no system to compile", stated, "a system is a sf.System", remedy))
         check_argument("options", options, Options | None)

@@ -30,6 +30,15 @@ _RESERVED = frozenset(
     " con prn aux nul fmi fmi2 fmi3 fmu mex mexfunction simstruc simulink symosfunction selftest"
     " break catch class elseif end function global otherwise parfor persistent try".split()
 )
+# Names that an export's own build, or scripts of Matlab beside its MEX file, need: targets of CMake, then constants and
+# common functions, which the file would hide from everything on the path.
+_USED_BESIDE_EXPORTS = frozenset(
+    "all clean depend edit_cache help install package rebuild_cache run_tests test uninstall zero_check"
+    " ans e eps i inf j nan pi"
+    " abs acos any asin atan atan2 ceil cos cosh cross det diag diff disp dot eig error exp eye find fix floor inv"
+    " length linspace load log max mean min mod norm ones plot rand randn rank reshape round save sign sim sin sinh"
+    " size sort sqrt std step sum svd tan tanh trace zeros".split()
+)
 _RESERVED_PREFIXES = ("symofros_", "sym_", "fmi2", "fmi3")
 _ILLEGAL = re.compile(r"[^A-Za-z0-9]+")
 _MAX_LENGTH = 48
@@ -121,6 +130,12 @@ def identifier(text: str) -> str:
     if lower.startswith(_RESERVED_PREFIXES):
         name = f"m_{name}"
     return f"{name}_" if is_reserved else name
+
+
+def package_name(text: str) -> str:
+    """The `identifier` of an export's files and symbols: "_" after what its build or Matlab's scripts need, too."""
+    name = identifier(text)
+    return f"{name}_" if name.lower() in _USED_BESIDE_EXPORTS else name
 
 
 def function_symbols(name: str, functions: Iterable[tuple[str, str]]) -> list[str]:

@@ -11,7 +11,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.base.c_text import c_string, comment, doubles, integers, strings
-from symofros.base.names import identifier
+from symofros.base.names import identifier, package_name
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.external_block import ExternalBlock
 from symofros.diagrams.program.compiled import (
@@ -146,7 +146,7 @@ def diagram_program(
     _refuse(resolved, stepping)
     shown = outputs or default_outputs(diagram, resolved)
     interface = Interface.of(resolved, shown)
-    name, title = identifier(diagram.name), diagram.name
+    name, title = package_name(diagram.name), diagram.name
     write = fuser(resolved)
     files: dict[str, str] = {f"{name}.h": _header(name, title, interface, generator)}
     first = first_motion(diagram, interface, shown, stepping)

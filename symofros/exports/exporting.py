@@ -13,7 +13,7 @@ import numpy as np
 
 from symofros.base.arguments import checked
 from symofros.base.functions import FRAME_FUNCTIONS, exported
-from symofros.base.names import coordinate_of, identifier, speed_of
+from symofros.base.names import coordinate_of, package_name, speed_of
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation, compile_system
 from symofros.description import System
@@ -275,7 +275,7 @@ def _material(
     functions = tuple(dict.fromkeys((*offered, *further, *needs)))
     compilation = Compilation(system, Options(functions, None if frames is None else tuple(frames)))
     record = compilation.record
-    c_name = identifier(name or record.name)
+    c_name = package_name(name or record.name)
     framed = [request.frame for request in compilation.requests if request.name in FRAME_FUNCTIONS]
     shown = _outputs(record.frame_names, framed, outputs)
     if target in _DIFFERENTIATED and record.driven and shown:

@@ -9,7 +9,7 @@ from dataclasses import dataclass
 from pathlib import Path
 
 from symofros.base.atomic import write_atomically
-from symofros.base.names import identifier
+from symofros.base.names import identifier, package_name
 from symofros.errors import ExportError, Problem
 
 MANIFEST = "symofros-export.json"
@@ -75,7 +75,8 @@ def check_same(folder: Path, target: str, name: str) -> None:
     if not check_folder(folder):
         return
     stated = json.loads((folder / MANIFEST).read_text(encoding="utf-8"))
-    if (stated.get("target"), stated.get("name")) != (target, identifier(name)):
+    same_name = stated.get("name") in (identifier(name), package_name(name))  # Of a description, or of code.
+    if stated.get("target") != target or not same_name:
         raise ExportError(
             Problem(
                 f"'{folder.name}' holds another export, which would be removed",

@@ -20,10 +20,16 @@ class WrappedDynamics(ABC):
 
     Raises:
         InteropError: The model has prescribed motions, forces that depend on time or rigid contacts.
+        SymofrosError: Its forces have states, which `Model.carried` has among its speeds.
     """
 
     def __init__(self, model: Model, operations: Operations) -> None:
         check_functions(model.record)
+        if model.carried is not model:
+            model.record.refuse_states(
+                "a function of another framework",
+                "Dynamics(model.carried), q with idle coordinates, v with the states at its end",
+            )
         self.model = model.with_precision("double")
         self.coordinates = Coordinates(model.record.segments, operations)
         self._sizes = {"q": model.nq, "q0": model.nq, "q1": model.nq, "u": model.nu, "par": model.npar}

@@ -372,18 +372,16 @@ class ModelRecord:
             rule, remedy = "runs and steppers look for events", "leave them out: replace(system, events={})"
             raise SymofrosError(Problem(f"{what}: events of model '{self.name}'", ", ".join(acting), rule, remedy))
 
-    def refuse_states(self, what: str) -> None:
-        """Refuse states of forces where nothing takes them.
+    def refuse_states(self, what: str, remedy: str = "leave out LuGre, Hysteresis, bristles, ForceState") -> None:
+        """Refuse states of forces where nothing takes them; a remedy may be `model.carried`.
 
         Raises:
             SymofrosError: There are some.
         """
         if self.state_names:
-            found, rule = ", ".join(self.state_names[:8]), f"{what} takes coordinates and speeds alone"
-            remedy = "leave the elements with states out (LuGre, Hysteresis), or take friction that is smooth"
-            raise SymofrosError(
-                Problem(f"model '{self.name}' has states of forces: {what} has none of them", found, rule, remedy)
-            )
+            found, rule = ", ".join(self.state_names[:8]), f"{what} is of coordinates and speeds alone"
+            title = f"model '{self.name}' has states of forces: {what} takes none"
+            raise SymofrosError(Problem(title, found, rule, remedy))
 
     def sampling_bounds(self) -> list[tuple[float, float]]:
         """Finite bounds a coordinate: its own, one turn for an angle, one unit otherwise."""

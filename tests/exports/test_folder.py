@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.base.names import identifier
+from symofros.base.names import identifier, package_name
 from symofros.exports.folder import MANIFEST, check_same, write_folder
 
 PENDULUM = MODELS["pendulum"]
@@ -70,6 +70,14 @@ def test_reserved_names_become_other_identifiers(name: str) -> None:
     called = identifier(name)
     assert called != name
     assert called.isidentifier()
+
+
+@pytest.mark.parametrize("name", ["test", "All", "clean", "pi", "i", "sin", "step"])
+def test_exports_have_no_name_that_cmake_or_matlab_uses(name: str, tmp_path: Path) -> None:
+    """CMake refused a target "test"; on Matlab's path a MEX file "pi" took the place of the number."""
+    system = sf.System(name, PENDULUM.bodies, PENDULUM.parameters)
+    called = sf.export(system, "mex", tmp_path).name
+    assert called == package_name(name) == f"{name}_" != identifier(name)
 
 
 def test_invalid_arguments_of_export_are_refused(tmp_path: Path) -> None:

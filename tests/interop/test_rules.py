@@ -5,12 +5,14 @@ from __future__ import annotations
 import re
 import subprocess
 import sys
+from typing import Any
 
 import pytest
 
 import symofros as sf
 from symofros.base.functions import FUNCTIONS
 from symofros.interop import rules
+from symofros.interop.wrapped import WrappedDynamics
 from tests.models import model
 
 
@@ -63,6 +65,31 @@ def test_functions_of_friction_that_sticks_are_refused() -> None:
     rules.check_record(record)
     with pytest.raises(sf.SymofrosError, match="friction that sticks: s(.|\n)*sticks=False"):
         rules.check_functions(record)
+
+
+def test_states_of_forces_are_refused_as_functions_are_made() -> None:
+    """They were refused at the first call, in words that had no remedy."""
+    joint = sf.Joint("s", "prismatic", axis=(1, 0, 0), elements=(sf.LuGre(6.0, stiffness=4e3, damping=6.0),))
+    sliding = sf.compile(sf.System("block", [sf.RigidBody("block", joint, sf.Inertia(2.0))]))
+    with pytest.raises(sf.SymofrosError, match=r"states of forces(.|\n)*s\.bristle(.|\n)*Dynamics\(model\.carried\)"):
+        Wrapped(sliding, None)  # type: ignore[arg-type]
+    assert Wrapped(sliding.carried, None).model.nv == 2  # type: ignore[arg-type]
+
+
+class Wrapped(WrappedDynamics):
+    """Of no framework."""
+
+    def _apply(self, name: str, *arrays: Any) -> Any:
+        raise NotImplementedError
+
+    def _given(self, function: str, **given: Any) -> list[Any]:
+        raise NotImplementedError
+
+
+def test_a_model_in_place_of_its_system_is_named() -> None:
+    """JAX and PyTorch take a model, CasADi a system: "build a sf.System" was the remedy."""
+    with pytest.raises(sf.DescriptionError, match="that the model was compiled from"):
+        sf.compile(model("double_pendulum"))  # type: ignore[arg-type]
 
 
 @pytest.mark.parametrize("function", rules.RULES)

@@ -284,6 +284,15 @@ def test_models_without_states_say_so(ask: Any) -> None:
         ask(dragged())
 
 
+def test_rollouts_of_states_are_those_of_the_carried_model() -> None:
+    """As the refusal says."""
+    with pytest.raises(sf.SymofrosError, match=r"rollout takes none(.|\n)*sf\.rollout\(model\.carried"):
+        sf.rollout(dragged(), [0.0], [0.0], np.ones((20, 1)), dt=1e-3)
+    rolled = sf.rollout(dragged().carried, np.zeros(2), np.zeros(2), np.ones((20, 1)), dt=1e-3)
+    run = sf.simulate(dragged(), t_end=0.02, dt=1e-3, u={"x": 1.0})
+    np.testing.assert_allclose(rolled.v[-1], [*run.v[-1], *run.z[-1]], rtol=1e-12)
+
+
 def test_models_without_states_refuse_them() -> None:
     model = block(sf.Damper(1.0))
     assert model.nz == 0 and model.carried is model and model.names.z == ()

@@ -8,7 +8,7 @@ from string import Template
 
 from symofros.base.c_text import comment, doubles
 from symofros.base.functions import FRAME_FUNCTIONS
-from symofros.base.names import identifier
+from symofros.base.names import package_name
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation
 from symofros.description import System
@@ -53,7 +53,7 @@ def write_cuda_package(system: System, name: str | None, frames: Sequence[str] |
     functions = FUNCTIONS if chosen else tuple(x for x in FUNCTIONS if x not in FRAME_FUNCTIONS)
     made = Compilation(system, Options(functions, chosen))
     program, record = made.program, made.record
-    c_name = identifier(name or record.name)
+    c_name = package_name(name or record.name)
     prefixes: dict[Precision, str] = {"double": c_name, "single": f"{c_name}_single"}
     codes = {precision: made.device_code(precision, prefix) for precision, prefix in prefixes.items()}
     left_out = [function.name for function in program.functions if function.solver is not None]

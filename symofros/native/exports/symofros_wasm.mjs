@@ -29,6 +29,8 @@ export class Model {
     exports._initialize?.();
     this.functions = [];
     for (let i = 0; i < exports.js_functions(); ++i) this.functions.push(this.#read(i));
+    // Names that inputs may have; the first array of each function is of parameters, which are an instance's.
+    this.inputs = new Set(["q", "v", "u", "a", "t", ...this.functions.flatMap((f) => f.in.slice(1).map((a) => a.name))]);
     this.work = this.allocate(8 * Math.max(1, exports.js_size(1)));
     this.pre = this.allocate(8 * Math.max(1, exports.js_size(0)));
     this.par = exports.js_constant(0);
@@ -48,7 +50,8 @@ export class Model {
   }
 
   /** Evaluate a function of one state. `inputs`: arrays by name; t, u and others that are left out are zero; quaternions
-   *  are of unit length, which is not looked at. Returns the outputs by name, as copies. */
+   *  are of unit length, which is not looked at. Parameters are the defaults; an instance has its own. Returns the outputs
+   *  by name, as copies. */
   evaluate(name, inputs = {}, frame = null) {
     const f = this.find(name, frame), call = this.#call(f, 1);
     this.#fill(f, call, inputs, 1);
@@ -164,6 +167,10 @@ export class Model {
   }
 
   #fill(f, call, inputs, n) {
+    const unknown = Object.keys(inputs).find((name) => !this.inputs.has(name));
+    if (unknown !== undefined)
+      throw new RangeError(`${f.name} takes no '${unknown}'; inputs are ${[...this.inputs].join(", ")}. Parameters are those`
+        + " of an instance: set its 'par', call its prepare() and evaluate()");
     f.in.forEach((a, k) => {
       if (k === 0) return;
       const given = inputs[a.name], at = this.view(call.inputs[k], n * a.size);

@@ -261,7 +261,9 @@ def rollout(
     model.record.refuse_sticking("rollout")
     model.record.refuse_actions("rollout")
     if model.carried is not model:
-        model.record.refuse_states("rollout, which is of `model.carried`")
+        model.record.refuse_states(
+            "rollout", "sf.rollout(model.carried, ...), q with idle coordinates, v with the states at its end"
+        )
     model = model.with_precision("double")
     _refuse(model, method, dt, t0)
     held = real_array(u)
