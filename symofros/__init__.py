@@ -67,6 +67,7 @@ if TYPE_CHECKING:
     from symofros.diagrams.diagram import Diagram as Diagram
     from symofros.diagrams.files.reader import load_diagram as load_diagram
     from symofros.diagrams.files.writer import save_diagram as save_diagram
+    from symofros.diagrams.linear import DiagramStateSpace as DiagramStateSpace
     from symofros.diagrams.result import DiagramRun as DiagramRun
     from symofros.diagrams.simulation import Simulation as Simulation
     from symofros.diagrams.stepper import DiagramStepper as DiagramStepper

@@ -149,6 +149,7 @@ def constructors() -> list[type]:
         "Advice",
         "DiagramRun",
         "DiagramRuns",
+        "DiagramStateSpace",
         "DiagramStepper",
         "EvaluationContext",
         "Expression",

@@ -3,7 +3,7 @@
 from __future__ import annotations
 
 import math
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from dataclasses import replace
 from functools import cached_property
 from typing import Any
@@ -12,6 +12,7 @@ from symofros.base.arguments import checked
 from symofros.base.options import Options
 from symofros.diagrams.batch import DiagramRuns, run_batch
 from symofros.diagrams.diagram import Diagram
+from symofros.diagrams.linear import DiagramStateSpace, linearised
 from symofros.diagrams.observer import Observer
 from symofros.diagrams.program.compiled import CompiledDiagram, Resolved, compile_diagram, rates_of, resolve
 from symofros.diagrams.rates import schedule
@@ -126,6 +127,35 @@ class Simulation:
             inputs=inputs,
             **chosen,
         )
+
+    @checked
+    def state_space(
+        self,
+        *,
+        t: float = 0.0,
+        inputs: Mapping[str, Any] | None = None,
+        parameters: Mapping[str, Any] | None = None,
+        starts: Mapping[str, Any] | None = None,
+        outputs: Sequence[str] | None = None,
+    ) -> DiagramStateSpace:
+        """Linearise it about a state, from its inlets to its outlets, by exact derivatives.
+
+        Continuous blocks and mechanisms give x' = A x + B u. A diagram of blocks sampled at one rate, without
+        continuous states, gives x[k + 1] = A x[k] + B u[k], whose states are what the blocks remember.
+
+        Args:
+            t: Time [s].
+            inputs: Inlet -> its value at this state; by default what it starts with.
+            parameters: Run-time parameters by name, as of `run`.
+            starts: The state, as `run` takes first states; by default the diagram's first.
+            outputs: Signals "block.port", or outlets, that y stacks, in order; by default the outlets.
+
+        Raises:
+            UnknownNameError: There is no such inlet, parameter or state.
+            AssemblyError: The state does not meet the constraints.
+            SymofrosError: Samples meet continuous states, or a block switches at this state.
+        """
+        return linearised(self.compiled, t=t, inputs=inputs, parameters=parameters, starts=starts, outputs=outputs)
 
     def compiled_with(self, inputs: Mapping[str, Any] | None) -> CompiledDiagram:
         """The diagram as C functions, with what is given for its inlets, as of `run`."""

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from symofros.expr.derivative import partials as partials
 from symofros.expr.edges import ONE as ONE
 from symofros.expr.edges import ZERO as ZERO
 from symofros.expr.edges import Edge as Edge
@@ -16,6 +17,8 @@ from symofros.expr.garbage import collect_rarely as collect_rarely
 from symofros.expr.graph import Graph as Graph
 from symofros.expr.graph import Slot as Slot
 from symofros.expr.instants import OPERANDS as OPERANDS
+from symofros.expr.instants import InstantKind as InstantKind
+from symofros.expr.instants import instant_operands as instant_operands
 from symofros.expr.instants import with_instants as with_instants
 from symofros.expr.numerics.evaluate import needed_nodes as needed_nodes
 from symofros.expr.ops import ADD as ADD

@@ -15,6 +15,7 @@ import numpy as np
 
 from symofros.base.arrays import Array, Mask
 from symofros.base.measures import Measures
+from symofros.base.names import speed_column
 from symofros.diagrams.block import Shape
 from symofros.diagrams.inlets import Inlet
 from symofros.diagrams.program.lowered_block import Piece
@@ -211,12 +212,22 @@ class Layout:
         sizes = (len(self.q0), len(self.v0), len(self.condition_names))
         return Part(blocks, *(slice(0, size) for size in sizes))
 
+    @property
+    def speed_labels(self) -> list[str]:
+        """Names of speeds and states (nv) that differ from those of coordinates: "arm.dq1" of the rate of "arm.q1"."""
+        labels = list(self.v_names)
+        for block, place in self.v.items():
+            own = [name.removeprefix(f"{block}.") for name in self.q_names[self.q[block].slice]]
+            for i in place.range:
+                labels[i] = f"{block}.{speed_column(labels[i].removeprefix(f'{block}.'), own)}"
+        return labels
+
     def start_place(self, name: str) -> tuple[str, Place]:
         """Where a state begins: its vector, "q", "v" or "u", and its place there.
 
         Args:
             name: "block.q" or "block.v" of a mechanism as a whole, "block.state" or "block.memory" of another block, or
-                one entry, such as "arm.q1" or "filter.s[0]".
+                one entry, such as "arm.q1", "arm.dq1" or "filter.s[0]".
 
         Raises:
             UnknownNameError: There is no such state.
@@ -232,7 +243,7 @@ class Layout:
             names[i]: (group, Place(i, ()))
             for group, names, places in (
                 ("u", self.u_names, self.memory.values()),
-                ("v", self.v_names, [*self.v.values(), *self.states.values()]),
+                ("v", self.speed_labels, [*self.v.values(), *self.states.values()]),
                 ("q", self.q_names, self.q.values()),
             )
             for place in places

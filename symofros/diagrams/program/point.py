@@ -12,25 +12,29 @@ from symofros.diagrams.program.model_environment import parameter_group
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Source, Wired
 from symofros.errors import DescriptionError, Problem
-from symofros.expr import Edge, Graph, copy_into, needed_nodes
+from symofros.expr import Edge, Graph, Slot, copy_into, needed_nodes
 
 AT = ("q", "v", "u", "t")
 # What is known once the accelerations of an instant are.
 AFTER = (*AT, "a", "lam")
 
 
-def reads(graph: Graph, edges: Sequence[Edge], groups: Collection[str], given: Collection[int] = ()) -> bool:
-    """Whether the computation of edges reads inputs of some groups.
+def read_slots(graph: Graph, edges: Sequence[Edge], given: Collection[int] = ()) -> set[Slot]:
+    """The inputs that the computation of edges reads.
 
     Args:
         graph: The graph.
         edges: Edges that are computed.
-        groups: Groups of inputs.
         given: Nodes whose values are available.
     """
     nodes = needed_nodes(graph, edges, given)
     read = {*map(abs, edges), *(abs(arg) for node in nodes for arg in graph.args[node])}
-    return any(slot.group in groups and node in read for node, slot in graph.slot.items())
+    return {slot for node, slot in graph.slot.items() if node in read}
+
+
+def reads(graph: Graph, edges: Sequence[Edge], groups: Collection[str], given: Collection[int] = ()) -> bool:
+    """Whether the computation of edges reads inputs of some groups; `given` as of `read_slots`."""
+    return any(slot.group in groups for slot in read_slots(graph, edges, given))
 
 
 class Point:

@@ -6,9 +6,11 @@ from collections.abc import Sequence
 from dataclasses import dataclass
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, numeric
+from symofros.base.measures import Measures
 from symofros.errors import Problem, SymofrosError
 from symofros.runtime.constrained import null_space, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model, Output
@@ -94,12 +96,31 @@ def state_space(
 
 
 def _allowed(model: Model, q: ArrayLike, v: Array, u: Array, par: ArrayLike | None, t: float) -> Array:
-    """A basis of the solutions of P dq = 0, (d(G v - b)/dq) dq + G dv = 0 (eq. 5)."""
+    """A basis of the changes that the constraints of a model allow."""
     rate_by_q = model.constraint_rate_derivative(q, v, u=u, par=par, t=t)
     G = model.constraint_jacobian(q, u=u, par=par, t=t)
-    measures, names = model.record.measures, model.names.constraints
+    names = model.names.constraints
     on_positions = [i for i, name in enumerate(names) if name not in model.record.speed_conditions]
+    return allowed_changes(G, rate_by_q, on_positions, model.record.measures, np.ones(model.nv, dtype=np.bool_))
+
+
+def allowed_changes(
+    G: Array, rate_by_q: Array, on_positions: Sequence[int], measures: Measures, moving: npt.NDArray[np.bool_]
+) -> Array:
+    """A basis (2 nv, n) of the solutions of P dq = 0, (d(G v - b)/dq) dq + G dv = 0 (eq. 5).
+
+    Args:
+        G: Constraint Jacobian (nc, nv).
+        rate_by_q: d(G v - b)/dq (nc, nv).
+        on_positions: Rows of G that bind coordinates: those of P.
+        measures: Measures of G.
+        moving: Whether each coordinate is one (nv); others, of states that are integrated as speeds, have no changes.
+    """
+    nv = len(moving)
     changes, speeds = null_space(G[on_positions], measures.of_rows(on_positions)), null_space(G, measures)
+    if not moving.all():  # The others are free directions of their own.
+        directions, _, _ = np.linalg.svd(changes * moving[:, np.newaxis], full_matrices=False)
+        changes = directions[:, : changes.shape[1] - np.count_nonzero(~moving)]
     followed = -pseudo_inverse(G, measures) @ rate_by_q @ changes
-    basis = np.block([[changes, np.zeros((model.nv, speeds.shape[1]))], [followed, speeds]])
+    basis = np.block([[changes, np.zeros((nv, speeds.shape[1]))], [followed, speeds]])
     return np.asarray(np.linalg.qr(basis)[0], dtype=np.float64)
