@@ -64,7 +64,8 @@ def simulate(
             where it gives the same, a short run in doubt is made once more with half the step.
             Those not given are zero, but for the rates of a prescribed motion that is a formula of t.
         par: Run-time parameters (npar), or values by name; the model's own by default.
-        events: Name -> formula or Event.
+        events: Name -> formula or Event, after those of the description; one of the same name stands in its place, and
+            None leaves it out.
         options: Options of stepping, stabilisation and recording; those of `SimulationOptions()` by default.
         progress: Show a progress bar; or a function that is called with the time reached [s], now and then.
         changes: Fields of SimulationOptions by name, which replace those of `options`: method="dopri5", dt=1e-4, ...
