@@ -176,8 +176,8 @@ def check(subject: Subject, settings: Settings, factories: Factories | None = No
         SymofrosError: Our own model can't be made.
     """
     assembly = subject.assembly
-    system = _without_events(subject.system)
-    subject = replace(subject, system=system, frames=subject.frames or chosen_frames(assembly))
+    left_out = [*_events_left_out(subject.label, subject.system)]
+    subject = replace(subject, system=_without_events(subject.system), frames=subject.frames or chosen_frames(assembly))
     obstacle = unsampled_motion(subject.system, assembly)
     if obstacle:
         return failed(subject.label, "compile", obstacle)
@@ -199,17 +199,20 @@ def check(subject: Subject, settings: Settings, factories: Factories | None = No
     bench = _Bench(subject, assembly, settings, regular, variants, engines, scales, condition, seconds)
     rows = [answer for answer in answers if isinstance(answer, Comparison)]
     rows += [omissions] if omissions is not None else []
-    rows += _comparisons(bench)
+    rows += [*left_out, *_comparisons(bench)]
     rows += _unconfirmed(bench, rows)
     return _result(bench, rows)
 
 
 def _without_events(system: sf.System) -> sf.System:
     """The system as engines are asked about it: at states, and over motions in which nothing switches."""
-    if not system.events:
-        return system
-    note = f"events are not compared, nor what they do: {', '.join(system.events)}"
-    return replace(system, events={}, notes=(*system.notes, note))
+    return replace(system, events={}) if system.events else system
+
+
+def _events_left_out(label: str, system: sf.System) -> Iterator[Comparison]:
+    if system.events:
+        note = f"{', '.join(system.events)}: motions are compared without them, and without what they do"
+        yield Comparison(label, "symofros", "events", "unsupported", note=note)
 
 
 def _comparisons(bench: _Bench) -> Iterator[Comparison]:

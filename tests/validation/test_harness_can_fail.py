@@ -86,3 +86,14 @@ def test_a_nan_in_our_jacobian_disagrees(monkeypatch: pytest.MonkeyPatch) -> Non
     assert row.status == "disagree" and "our G is not a finite number in" in row.note
     (row,) = (row for row in result.comparisons if row.status == "failed")
     assert "of 33 random states left out" in row.note
+
+
+def test_a_model_with_events_is_compared_without_them_and_says_so() -> None:
+    """As a tree, which engines know: events that act within its free motion would take it from theirs."""
+    given = floating_arm()
+    name = given.system.bodies[-1].joint.name  # type: ignore[union-attr]
+    event = sf.Event("t - 1e-3", action={f"d{name}": 5.0})
+    result = check(replace(given, system=replace(given.system, events={"kick": event})), SETTINGS)
+    assert result.ok and "motion_energy" in {row.quantity for row in result.compared}
+    (row,) = (row for row in result.comparisons if row.quantity == "events")
+    assert row.status == "unsupported" and row.note.startswith("kick: ")

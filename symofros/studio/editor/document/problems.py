@@ -18,7 +18,7 @@ from symofros.studio.editor.editing.yaml_spans import YamlText
 ShownProblem = dict[str, Any]
 
 _NAMED = re.compile(
-    r"(joint|body|beam|constraint|connection|contact|virtual power|virtual_power|potential|state|parameter|input)"
+    r"(joint|body|beam|constraint|connection|contact|virtual power|virtual_power|potential|state|event|parameter|input)"
     r" '([^']*)'"
 )
 _FRAME = re.compile(r"frame '([^']*)' of body '([^']*)'")
@@ -30,6 +30,7 @@ _SECTION_OF = {
     "virtual_power": ("virtual_power",),
     "potential": ("potentials",),
     "state": ("states",),
+    "event": ("events",),
     "parameter": ("parameters",),
     "input": ("inputs",),
     "body": ("bodies",),

@@ -13,10 +13,12 @@ from symofros.expr import CONSTANTS
 from symofros.mechanics.topology import motion_symbols
 from symofros.studio.editor.editing.data_edits import Edit, Path, edited, fault, section_of
 from symofros.studio.editor.editing.diagram_renaming import renaming_in_diagram
-from symofros.studio.editor.editing.formulas import formulas, with_names
+from symofros.studio.editor.editing.formulas import formulas, names_in, with_names
 
-# Mappings whose keys are speeds that formulas could name.
-_BY_SPEED = (("virtual_power", None), ("nonholonomic", "coefficients"))
+# Mappings whose keys are speeds that formulas could name, of actions parameters, too.
+_BY_SPEED = (("virtual_power", None), ("nonholonomic", "coefficients"), ("events", "action"))
+# What formulas of events call the forces of a section's entries, and where balls of contacts are.
+_FORCES = dict.fromkeys(("closures", "couplings", "nonholonomic"), ("lam", "wrench")) | {"contacts": ("contact",)}
 _BARE = ("parameters", "inputs")
 
 
@@ -50,7 +52,23 @@ def renaming(data: Any, edit: Edit) -> list[Edit]:
     elif len(path) == 2 and path[0] in _BARE:
         of = symbol_of if path[0] == "inputs" else str
         edits = _symbols(data, path, {of(str(path[1])): of(new)})
+    elif len(path) == 2 and path[0] in _FORCES:
+        edits = _symbols(data, path, _forces(data, _FORCES[str(path[0])], str(path[1]), new))
+        if "lam" in _FORCES[str(path[0])] and path[1] in section_of(data, "switches"):
+            edits.append(Edit("rename", ("switches", path[1]), key=new))
     return [*edits, edit]
+
+
+def _forces(data: Any, groups: tuple[str, ...], old: str, new: str) -> dict[str, str]:
+    """What formulas of events call the forces of a constraint, contact or joint, before and after."""
+    begins = {f"{group}.{old}": f"{group}.{new}" for group in groups}
+    used = {name for _, text in formulas({"events": section_of(data, "events")}) for name in names_in(text)}
+    return {
+        name: to + name.removeprefix(begin)
+        for name in sorted(used)
+        for begin, to in begins.items()
+        if name == begin or name.startswith((f"{begin}.", f"{begin}["))
+    }
 
 
 def _body(data: Any, at: Path, new: str) -> list[Edit]:
@@ -61,8 +79,9 @@ def _body(data: Any, at: Path, new: str) -> list[Edit]:
     edits = [Edit("set", path, new) for path, name in _bodies_named(data) if name == old and old != WORLD]
     joint = section_of(section_of(section_of(data, "bodies"), old), "joint")
     if joint and "name" not in joint:
-        before, after = (symbols_of(joint, default_joint_name(name)) for name in (old, new))
-        edits += _symbols(data, at, dict(zip(before, after, strict=True)))
+        names = default_joint_name(old), default_joint_name(new)
+        before, after = (symbols_of(joint, name) for name in names)
+        edits += _symbols(data, at, dict(zip(before, after, strict=True)) | _forces(data, ("reaction",), *names))
     return edits
 
 
@@ -124,7 +143,8 @@ def _joint(data: Any, path: Path, new: str) -> list[Edit]:
         raise fault(path, "no name", "a joint has a name", "give one")
     old = joint.get("name", default_joint_name(str(path[1])))
     before, after = symbols_of(joint, str(old)), symbols_of(joint, new)
-    return [*_symbols(data, path, dict(zip(before, after, strict=True))), Edit("set", (*path, "name"), new)]
+    names = dict(zip(before, after, strict=True)) | _forces(data, ("reaction",), str(old), new)
+    return [*_symbols(data, path, names), Edit("set", (*path, "name"), new)]
 
 
 def symbols_of(joint: dict[str, Any], name: str) -> tuple[str, ...]:

@@ -195,3 +195,29 @@ def test_references_follow_a_renaming(renamed: str) -> None:
 def test_taken_and_invalid_names_are_refused(new: str) -> None:
     with pytest.raises(EditError):
         with_references(DIAGRAM, [Edit("rename", ("blocks", "pd"), key=new)])
+
+
+def test_events_follow_what_they_name() -> None:
+    """Forces of constraints and joints, parameters and speeds that actions set, and the constraint's switch."""
+    text = TEXTS["docking"].replace("turns: dshoulder", "turns: dshoulder + lam.gear - reaction.shoulder.fz")
+    for path, to in (
+        (("closures", "grasp"), "hold"),
+        (("couplings", "gear"), "left-gear"),
+        (("parameters", "grip"), "shut"),
+        (("bodies", "upper_arm", "joint"), "base"),
+    ):
+        text = renamed(text, path, to)
+    for line in (
+        "  slips: {formula: wrench.hold.fx^2 + wrench.hold.fy^2 - 100^2, direction: rising, action: {shut: 0}, once",
+        "  turns: dbase + `lam.left-gear` - reaction.base.fz",
+        "  hold: {engaged: shut, pose: moment}",
+        "  left-gear: {engaged: geared, pose: moment}",
+    ):
+        assert line in text, text
+    assert not analyse(FILES["docking"], text).problems
+
+
+def test_an_event_s_fault_leads_to_its_entry() -> None:
+    text = TEXTS["docking"].replace("action: {taut: 1}", "action: {tauter: 1}")
+    (problem,) = analyse(FILES["docking"], text).problems
+    assert problem["path"][:2] == ["events", "catches"], problem
