@@ -220,6 +220,16 @@ NOTES: Mapping[str, NoteKind] = {
         "base parameters of a model with armatures, rotors or beams, which have no columns",
         "the columns of `joint_terms`, or a model of the rigid links",
     ),
+    "parameters not excited": NoteKind(
+        "the motion determines … of … base parameters, and not …: …",
+        "a fit of base parameters to a motion that does not move what shows them",
+        "motions of the joints that show them",
+    ),
+    "parameters poorly excited": NoteKind(
+        "the motion tells base parameters poorly apart: … have … times the deviation of one that is fitted alone …; …",
+        "a fit whose columns of unit length have a condition above 100",
+        "larger or faster motions, of more frequencies, or fewer parameters",
+    ),
     "loops not closed": NoteKind(
         "no start closes the loops: constraints are missed by …",
         "inverse kinematics finds no posture on the constraints",

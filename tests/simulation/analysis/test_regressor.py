@@ -159,3 +159,61 @@ def test_samples_that_are_too_few_to_tell_are_refused() -> None:
     with pytest.raises(sf.ArgumentError, match="5 samples give 30 equations, all independent"):
         sf.base_parameters(model, samples=5)
     assert len(sf.base_parameters(model, samples=7).names) == 36
+
+
+def arm_and_rows(amplitude: float) -> tuple[sf.Model, np.ndarray, np.ndarray]:
+    """A double pendulum whose joints follow sines of two frequencies; its regressor, and the efforts of its motion."""
+    m = sf.compile(MODELS["double_pendulum"], FUNCTIONS)
+    t, rates = np.linspace(0.0, 10.0, 400)[:, None], np.array([1.0, 1.4])
+    q = amplitude * np.sin(rates * t)
+    v, a = amplitude * rates * np.cos(rates * t), -(rates**2) * q
+    return m, m.regressor(q, v, a), np.einsum("...ij,...j->...i", m.mass_matrix(q), a) + m.bias(q, v)
+
+
+def test_fits_have_the_deviations_of_repeated_measurements() -> None:
+    """Of 400 fits to efforts with noise of two sizes; their mean is the value without noise."""
+    m, Y, efforts = arm_and_rows(1.0)
+    base, rng, noise = sf.base_parameters(m), np.random.default_rng(0), np.array([0.01, 0.3])
+    exact = base.fit(Y, efforts)
+    np.testing.assert_allclose(Y[..., base.independent] @ exact.values, efforts, atol=1e-12)
+    fits = [base.fit(Y, efforts + noise * rng.normal(size=efforts.shape), noise) for _ in range(400)]
+    spread = np.std([fit.values for fit in fits], axis=0)
+    np.testing.assert_allclose(spread, fits[0].deviations, rtol=0.15)  # 400 draws tell them to 3.5 %, sigma to 2.5 %.
+    np.testing.assert_allclose(
+        np.mean([fit.values for fit in fits], axis=0), exact.values, atol=4.0 * spread.max() / 20
+    )
+    assert fits[0].residual == pytest.approx(1.0, rel=0.1) and not exact.notes and exact.condition < 100.0
+    assert str(exact).splitlines()[0].endswith("  mx(upper) + 0.5 m(lower)")
+
+
+def test_motions_that_do_not_show_parameters_are_noted() -> None:
+    """Six degrees, and postures at rest, which show no moment of inertia: both were fitted without a word."""
+    m, Y, efforts = arm_and_rows(0.1)
+    base = sf.base_parameters(m)
+    (small,) = base.fit(Y, efforts).notes
+    assert small.startswith("the motion tells base parameters poorly apart: ") and "Iyy(upper)" in small
+    postures = np.random.default_rng(1).uniform(-1.0, 1.0, (60, 2))
+    rest = np.zeros_like(postures)
+    static = base.fit(m.regressor(postures, rest, rest), m.bias(postures, rest))
+    assert static.notes[0].startswith("the motion determines 4 of 6 base parameters, and not Iyy(upper), Iyy(lower): ")
+    assert np.isinf(static.condition) and np.isinf(static.deviations).tolist() == [False, False, True] * 2
+    np.testing.assert_allclose(
+        static.values[[0, 1, 3, 4]], base.fit(*arm_and_rows(1.0)[1:]).values[[0, 1, 3, 4]], atol=1e-12
+    )
+
+
+@pytest.mark.parametrize(
+    ("given", "words"),
+    [
+        ({"efforts": np.zeros(2)}, "efforts does not fit"),
+        ({"regressor": np.zeros((9, 2, 6))}, "regressor does not fit"),
+        ({"noise": [1.0]}, "noise does not fit"),
+        ({"noise": [1.0, 0.0]}, "above zero"),
+        ({"efforts": np.full((9, 2), np.nan)}, "not finite"),
+        ({"regressor": np.zeros((3, 2, 20)), "efforts": np.zeros((3, 2))}, "6 equations for 6 parameters"),
+    ],
+)
+def test_arrays_that_are_no_measurement_are_refused(given: dict[str, Any], words: str) -> None:
+    base = sf.base_parameters(sf.compile(MODELS["double_pendulum"], FUNCTIONS))
+    with pytest.raises(sf.SymofrosError, match=words):
+        base.fit(**({"regressor": np.zeros((9, 2, 20)), "efforts": np.zeros((9, 2))} | given))
