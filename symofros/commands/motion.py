@@ -42,6 +42,8 @@ from symofros.simulation.stepping.methods import METHODS
 
 # Exit status of a command that Ctrl-C has ended: 128 and the number of the signal, as of shells.
 _STOPPED = 130
+# Events in a table at most.
+_MAX_EVENTS = 20
 
 
 @reads_models
@@ -205,6 +207,10 @@ def _tell(run: sf.Trajectory, files: list[str], as_json: bool) -> None:
                     "statistics": asdict(cost),
                     "last": last,
                     "energy_change": drift,
+                    "events": [
+                        {"name": found.name, "t": float(found.t), "energy_lost": float(found.energy_lost)}
+                        for found in run.events
+                    ],
                     "files": files,
                 },
                 indent=1,
@@ -216,6 +222,13 @@ def _tell(run: sf.Trajectory, files: list[str], as_json: bool) -> None:
     for name, column in run.columns().items():
         table.add_row(name, shown(column[0]), shown(column[-1]))
     out.print(table)
+    if run.events:
+        count = len(run.events)
+        first = f", the first {_MAX_EVENTS} of {count} (--json lists them)" if count > _MAX_EVENTS else ""
+        met = Table("event", "t [s]", "energy lost [J]", title=f"Events{first}")
+        for found in run.events[:_MAX_EVENTS]:
+            met.add_row(found.name, f"{found.t:.9g}", shown(found.energy_lost))
+        out.print(met)
     out.print(
         f"{cost.steps} steps, {cost.rejected} rejected, {cost.evaluations} evaluations; {cost.seconds:.3g} s,"
         f" {pace_of(run.t[-1] - run.t[0], cost.seconds)}; energy changed by {drift + 0.0:.3g} J",

@@ -13,6 +13,7 @@ from symofros.__main__ import app
 
 MODELS = Path(reference_models.__file__).parent
 PENDULUM = str(MODELS / "rigid" / "double_pendulum.yaml")
+DOCKING = str(MODELS / "closed" / "docking.yaml")
 FOUR_BAR = str(MODELS / "closed" / "four_bar.yaml")
 
 
@@ -34,6 +35,16 @@ def test_output_without_json_is_readable_text() -> None:
     found = run(PENDULUM, "0.1", "--input", "q1=3*sin(t)")
     assert found.exit_code == 0
     assert "finished at t = 0.1 s" in found.stdout and "times real time" in found.stdout
+
+
+def test_events_that_the_file_states_act_and_are_listed() -> None:
+    """A hand loses its part, and a rope catches it."""
+    said = json.loads(run(DOCKING, "2.5", "--json").stdout)
+    acted = [(found["name"], round(found["t"], 3)) for found in said["events"] if found["name"] != "turns"]
+    assert said["ok"] and acted == [("slips", 0.497), ("catches", 0.577)]
+    assert sum(found["energy_lost"] for found in said["events"]) > 7.0
+    text = run(DOCKING, "2.5").stdout
+    assert "energy lost" in text and "catches" in text
 
 
 def test_loops_are_closed_first() -> None:
