@@ -119,6 +119,15 @@ SYM_EXPORT int32_t sym_program_prepare(sym_program_instance *instance) {
     return status;
 }
 
+SYM_EXPORT const char *sym_program_refused(const sym_program_instance *instance) {
+    int32_t i;
+    for (i = 0; i < instance->program->n_parts; ++i) {
+        const sym_instance *part = instance->parts[i];
+        if (part->refused >= 0) return part->plant->conditions[part->refused];
+    }
+    return NULL;
+}
+
 /* Accelerations and multipliers are those under the inputs held now. */
 SYM_EXPORT int32_t sym_program_evaluate(sym_program_instance *instance) {
     const sym_function *f = instance->outputs.function;
@@ -214,8 +223,8 @@ static int32_t sym_program_integrate(sym_program_instance *instance, double t, i
     sym_diagram *d = &instance->diagram;
     int32_t i, status = SYM_FINISHED;
     d->before_end = before_end;
+    if (sym_program_refused(instance) != NULL) return SYM_PARAMETERS_REFUSED;
     for (i = 0; i < instance->program->n_parts; ++i) {
-        if (instance->parts[i]->refused >= 0) return SYM_PARAMETERS_REFUSED;
         if (instance->program->n_inputs > 0) instance->parts[i]->run.slope_valid = 0; /* they may have changed */
         instance->parts[i]->run.n_event_records = 0;
     }

@@ -65,6 +65,8 @@ sym_program_instance *sym_program_init(void *memory, size_t size, const sym_prog
  * from then on. Returns 0, or SYM_PARAMETERS_REFUSED where they violate a condition of a
  * model's description: nothing moves then (a part's check_parameters = 0 takes them as they come). */
 int32_t sym_program_prepare(sym_program_instance *instance);
+/* The condition of a description that parameters violate, in words; NULL where they violate none. */
+const char *sym_program_refused(const sym_program_instance *instance);
 /* Integrate to time t, executing instants on the way, that of t included: blocks sampled there read the inputs as they are
  * now, and sym_program_advance(instance, 0.0) executes those of the start. Steps end where formulas of time bend, jump or
  * change fast. Events of mechanisms act on the way; those of the call are the rows of the run of their part, as

@@ -80,16 +80,12 @@ static const char *fmu_condition(int which) { return (void)which, "parameters ar
 
 static int fmu_answer(fmu *f, int32_t status) {
     const char *reason;
-    int32_t i;
     if (status >= 0) return FMU_OK;
     if (status == SYM_NO_ROTATION) return FMU_INPUT_NO_ROTATION;
     reason = status == SYM_BEYOND_THEORY ? "a beam bends beyond its theory" : fmu_reason(status);
     if (reason != NULL) return strcpy(f->message, reason), FMU_BEYOND_THEORY;
     if (status != SYM_PARAMETERS_REFUSED) return FMU_SINGULAR;
-    for (i = 0; i < f->instance->program->n_parts; ++i) {
-        const sym_instance *part = f->instance->parts[i];
-        if (part->refused >= 0) sprintf(f->message, "%.250s", part->plant->conditions[part->refused]);
-    }
+    sprintf(f->message, "%.250s", sym_program_refused(f->instance));
     return FMU_STEP_REFUSED;
 }
 

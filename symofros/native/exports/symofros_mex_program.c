@@ -14,14 +14,12 @@ static const sym_model *constants(void) { return instance->program->instants(); 
 
 /* Ends the call where a status is below zero. */
 static void judge(int32_t status) {
+    const char *condition;
     char what[80];
-    int32_t i;
     if (status >= 0) return;
     begun = 0;
-    for (i = 0; i < instance->program->n_parts; ++i) {
-        const sym_instance *part = instance->parts[i];
-        if (part->refused >= 0) refuse("parameters", "Parameters", part->plant->conditions[part->refused]);
-    }
+    condition = sym_program_refused(instance);
+    if (condition != NULL) refuse("parameters", "Parameters", condition);
     sprintf(what, "the motion ends at t = %.9g s", *instance->diagram.t);
     if (status == SYM_BEYOND_THEORY) refuse("motion", what, "a beam bends beyond its theory; divide it, or use theory 'strain'");
     sprintf(what + strlen(what), ", status %d", (int)status);

@@ -20,13 +20,12 @@ static double block_period(SimStruct *S) {
 
 /* Report a status below zero. */
 static int block_failed(SimStruct *S, int32_t status) {
-    const sym_program_instance *instance = ssGetPWork(S)[0];
-    int32_t i;
+    const char *condition;
     if (status >= 0) return 0;
-    if (status == SYM_BEYOND_THEORY) ssSetErrorStatus(S, "a beam bends beyond its theory; divide it, or use theory 'strain'");
+    condition = sym_program_refused(ssGetPWork(S)[0]);
+    if (condition != NULL) ssSetErrorStatus(S, condition);
+    else if (status == SYM_BEYOND_THEORY) ssSetErrorStatus(S, "a beam bends beyond its theory; divide it, or use theory 'strain'");
     else ssSetErrorStatus(S, "the diagram's motion has no solution from here on; sf.Simulation of it says why");
-    for (i = 0; i < instance->program->n_parts; ++i)
-        if (instance->parts[i]->refused >= 0) ssSetErrorStatus(S, instance->parts[i]->plant->conditions[instance->parts[i]->refused]);
     return 1;
 }
 

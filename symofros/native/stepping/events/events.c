@@ -90,17 +90,17 @@ static int32_t sym_restart_events(sym_run *r) {
 /* Errors of a state by rounding. */
 #define SYM_EVENT_STATE_ROUNDING 1e-14
 
-/* errors (n) += what errors of the entries of y at x, their signs alternating after so many of them, change of all events, which have
- * the values (n) there. Returns 0 or a status. */
-static int32_t sym_add_errors_of_events(sym_event_step *step, double x, double rtol, double atol, int32_t alike, const double *values, double *errors) {
+/* errors (n) += what errors of the entries of y at x change of all events, which have the values (n) there. The errors' signs alternate
+ * after signs_length entries; below zero the first ones are negative. Returns 0 or a status. */
+static int32_t sym_add_errors_of_events(sym_event_step *step, double x, double rtol, double atol, int32_t signs_length, const double *values, double *errors) {
     sym_run *r = step->run;
     sym_workspace *w = step->memory;
     double *moved = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events;
-    const int32_t row = alike < 0 ? -alike : alike;
+    const int32_t length = signs_length < 0 ? -signs_length : signs_length;
     int32_t l, status = sym_dense_output(r, w, step->h, step->dense_ready, x, w->stage);
     if (status != 0) return status;
     sym_state_magnitudes(r, w->magnitude);
-    for (l = 0; l < 2 * r->system->nv; ++l) w->stage[l] += (l / row % 2 == (alike > 0) ? -1.0 : 1.0) * (atol + rtol * w->magnitude[l]);
+    for (l = 0; l < 2 * r->system->nv; ++l) w->stage[l] += (l / length % 2 == (signs_length > 0) ? -1.0 : 1.0) * (atol + rtol * w->magnitude[l]);
     sym_load_chart_state(r, r->t + x * step->h, w->stage);
     status = sym_event_values(r, moved);
     for (l = 0; l < r->system->n_events; ++l) errors[l] += fabs(moved[l] - values[l]);
@@ -138,12 +138,13 @@ static int32_t sym_measure_rounding(sym_event_step *step) {
     const sym_run *r = step->run;
     const int32_t n = r->system->n_events;
     double *rounding = r->event_values + SYM_EVENT_UNSURE * n, *values = r->event_values + (SYM_EVENT_ROWS - 2) * n;
-    int32_t i, alike, some = 0, status;
+    int32_t i, signs_length, some = 0, status;
     for (i = 0; i < n; ++i) some |= sym_begins_at_zero(r, i), rounding[i] = 0.0;
     if (!some) return 0;
     status = sym_event_values_within_step(step, 0.0, values);
-    for (alike = 1; alike < 4 * r->system->nv && status == 0; alike *= 2) /* entries that cancel with some signs do not with others */
-        status = sym_add_errors_of_events(step, 0.0, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, alike, values, rounding);
+    /* Entries that cancel with some signs do not with others. */
+    for (signs_length = 1; signs_length < 4 * r->system->nv && status == 0; signs_length *= 2)
+        status = sym_add_errors_of_events(step, 0.0, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, signs_length, values, rounding);
     for (i = 0; i < n; ++i)
         if (!sym_begins_at_zero(r, i)) rounding[i] = 0.0;
     return status;
