@@ -39,13 +39,19 @@ def hoist_parameters(program: Program) -> Program:
 
 def _parameter_only(graph: Graph) -> set[int]:
     """Nodes that depend on parameters and on nothing else but numbers."""
-    fixed = {node for node, slot in graph.slot.items() if slot.group == "par"}
+    fixed = _parameters(graph)
+    if not fixed:
+        return fixed
     numbers = graph.value
     for node in range(2, len(graph)):
         args = graph.args[node]
         if args and all(abs(arg) in fixed or arg == 0 or abs(arg) in numbers for arg in args):
             fixed.add(node)
     return fixed
+
+
+def _parameters(graph: Graph) -> set[int]:
+    return {node for node, slot in graph.slot.items() if slot.group == "par"}
 
 
 def check_parameters_unread(program: Program) -> None:
@@ -55,11 +61,10 @@ def check_parameters_unread(program: Program) -> None:
         AssertionError: A function still reads `par`.
     """
     graph = program.graph
-    for function in program.functions:
+    hidden = _parameters(graph).difference(program.pre)
+    for function in program.functions if hidden else ():
         for node in needed_nodes(graph, function.edges(), program.pre):
-            for arg in map(abs, graph.args[node]):
-                if arg not in program.pre and arg in graph.slot:
-                    assert graph.slot[arg].group != "par", f"{function.name} reads par at node {node}"
+            assert hidden.isdisjoint(map(abs, graph.args[node])), f"{function.name} reads par at node {node}"
 
 
 def check_staged(program: Program) -> None:

@@ -34,6 +34,14 @@ def test_packs_survive_all_passes() -> None:
     assert [len(pack.new_lanes) for pack in passes.run_passes(packed()).graph.packs] == [WIDTH]
 
 
+def test_packs_are_verified_once_in_each_graph(monkeypatch: pytest.MonkeyPatch) -> None:
+    seen: list[Graph] = []
+    monkeypatch.setattr(passes, "check_packs", lambda program: seen.append(program.graph))
+    program = passes.run_passes(packed())
+    assert len(seen) == 2  # As it was formed, and in chains.
+    assert seen[-1] is program.graph
+
+
 @pytest.mark.parametrize("place", range(len(passes.PIPELINE) + 1))
 def test_a_pass_that_breaks_a_pack_is_refused(place: int, monkeypatch: pytest.MonkeyPatch) -> None:
     broken = list(passes.PIPELINE)
