@@ -6,8 +6,10 @@ from collections.abc import Mapping
 from dataclasses import replace
 from typing import Any
 
+from symofros.base.arguments import shown
 from symofros.base.events import Event
 from symofros.description.values import Value, as_value
+from symofros.errors import DescriptionError, Problem
 
 
 def as_events(stated: Mapping[str, Any]) -> dict[str, Event]:
@@ -17,8 +19,13 @@ def as_events(stated: Mapping[str, Any]) -> dict[str, Event]:
         stated: Name -> formula or Event.
 
     Raises:
-        DescriptionError: A text is no formula.
+        DescriptionError: A text is no formula, or a name no text.
     """
+    for name in stated:
+        if not isinstance(name, str):
+            raise DescriptionError(
+                Problem("an event without a name", shown(name), "its name is a text", "{'grasp': ...}")
+            )
     return {name: _as_event(name, event) for name, event in stated.items()}
 
 

@@ -3,9 +3,9 @@
 from __future__ import annotations
 
 from symofros.description.yaml.faults import placed_problems as placed_problems
-from symofros.description.yaml.faults import read_event as read_event
 from symofros.description.yaml.files import DIAGRAM as DIAGRAM
 from symofros.description.yaml.files import MAX_BYTES as MAX_BYTES
+from symofros.description.yaml.files import read_event as read_event
 from symofros.description.yaml.files import read_yaml as read_yaml
 from symofros.description.yaml.files import write_yaml as write_yaml
 from symofros.description.yaml.schema import VERSION as VERSION

@@ -8,11 +8,8 @@ from typing import Any
 from pydantic import ValidationError
 from pydantic_core import ErrorDetails
 
-from symofros.base.events import Event
-from symofros.description.yaml.fields import Entry, Name
 from symofros.description.yaml.schema import VERSION, json_schema
-from symofros.description.yaml.schema_events import ShortEvent
-from symofros.description.yaml.yaml_nodes import Node, YamlFault
+from symofros.description.yaml.yaml_nodes import Node
 from symofros.errors import Problem, did_you_mean, near_name
 
 Path = tuple[str | int, ...]
@@ -74,29 +71,6 @@ def placed_problems(error: ValidationError, root: Node, file: str, data: Any) ->
     """
     faults = error.errors(include_url=False)
     return [(problem_of(fault, f"{file}:{_line_of(fault, root)}", data), _path_of(fault)) for fault in faults]
-
-
-def read_event(name: str, node: Node) -> Event:
-    """An event of a file of another kind, which states it as native files do.
-
-    Args:
-        name: Its key.
-        node: Its entry.
-
-    Raises:
-        YamlFault: With every problem, each at ":line".
-    """
-    inside = Node(1, {"events": Node(1, {name: node}, 1)}, 1)
-    try:
-        file = _Events.model_validate(inside.plain())
-    except ValidationError as error:
-        raise YamlFault([problem for problem, _ in placed_problems(error, inside, "", inside.plain())]) from None
-    event: Event = file.events[name].build(name=name)
-    return event
-
-
-class _Events(Entry):
-    events: dict[Name, ShortEvent]
 
 
 def _path_of(error: ErrorDetails) -> Path:

@@ -20,7 +20,9 @@ from symofros.description.reading import YAML_SUFFIXES, in_order, kind_of, read_
 from symofros.description.reading import Reading as Reading
 from symofros.description.system import Body, Input, Parameter, System
 from symofros.description.yaml.faults import placed_problems
+from symofros.description.yaml.fields import Entry, Name
 from symofros.description.yaml.schema import BodyEntry, InputEntry, NativeFile, SystemEntry, default_joint_name
+from symofros.description.yaml.schema_events import ShortEvent
 from symofros.description.yaml.yaml_nodes import Node, YamlFault
 from symofros.description.yaml.yaml_pieces import compose
 from symofros.description.yaml.yaml_writer import write_yaml as write_yaml
@@ -71,6 +73,29 @@ def read_yaml(
     merger.composed = composed
     merger.add(main, str(main), ())
     return merger.reading(main.stem)
+
+
+def read_event(name: str, node: Node) -> Event:
+    """An event of a file of another kind, which states it as native files do.
+
+    Args:
+        name: Its key.
+        node: Its entry.
+
+    Raises:
+        YamlFault: With every problem, each at ":line".
+    """
+    inside = Node(1, {"events": Node(1, {name: node}, 1)}, 1)
+    try:
+        file = _Events.model_validate(inside.plain())
+    except ValidationError as error:
+        raise YamlFault([problem for problem, _ in placed_problems(error, inside, "", inside.plain())]) from None
+    event: Event = file.events[name].build(name=name)
+    return event
+
+
+class _Events(Entry):
+    events: dict[Name, ShortEvent]
 
 
 @dataclass

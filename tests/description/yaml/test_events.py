@@ -110,6 +110,13 @@ def test_all_that_an_event_states_is_written_and_read(tmp_path: Path) -> None:
     assert sf.load(tmp_path / "symbolic.yaml") == symbolic
 
 
+@pytest.mark.parametrize("events", [{1: "z"}, {"a": None}, {"a": "z +"}, {"": "z"}, ["z"], {"a": float("nan")}])
+def test_what_is_no_event_is_refused_in_python(tmp_path: Path, events: Any) -> None:
+    system = sf.load(written(tmp_path, "a: z"))
+    with pytest.raises(sf.DescriptionError):
+        sf.compile(replace(system, events=events))
+
+
 def test_events_are_shown_and_compared(tmp_path: Path) -> None:
     """`info` lists them, `diff` names the one that changed, and switches."""
     system, path = MODELS["docking"], tmp_path / "other.yaml"
