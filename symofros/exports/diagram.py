@@ -43,7 +43,7 @@ from symofros.runtime.record import ModelRecord
 PROGRAM_HEADERS = (*INTEGRATOR_HEADERS, "diagrams/symofros_diagram.h", "diagrams/symofros_program.h")
 DIAGRAM_LOOP = "diagrams/symofros_diagram.c"
 # Of the self-test, whose signals are those of the same run from Python.
-_TOLERANCE = "1e-9"
+TOLERANCE = "1e-9"
 
 
 @dataclass(frozen=True)
@@ -91,7 +91,7 @@ def write_diagram(
         "until": repr(first.until),
         "given": doubles(first.given),
         "reference": doubles(first.signals),
-        "tolerance": _TOLERANCE,
+        "tolerance": TOLERANCE,
         "step": repr(stepping.dt),
         "sources": " ".join(file for file in files if file.endswith(".c")),
     }

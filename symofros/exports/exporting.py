@@ -36,6 +36,7 @@ from symofros.exports.interchange.urdf import write_urdf
 from symofros.exports.limits import events_note, joints_of, limits_note
 from symofros.exports.material import Material, Stepping
 from symofros.exports.wasm import wasm
+from symofros.exports.wasm.program import write_diagram_wasm
 from symofros.exports.wasm.wasm import write_wasm
 from symofros.expr import OPERANDS
 from symofros.generator import InterpretedUnit
@@ -64,6 +65,7 @@ _DIAGRAMS: dict[str, Callable[[Diagram, Path, Sequence[str] | None, Stepping, st
     "sfunction": write_diagram_sfunction,
     "fmu2": write_diagram_fmu2,
     "fmu3": write_diagram_fmu3,
+    "wasm": write_diagram_wasm,
 }
 # Functions of reactions, in packages of C alone.
 REACTIONS = ("joint_wrenches", "prescribed_efforts", "section_forces")
@@ -104,7 +106,7 @@ def export(
 
     Args:
         model: A system, or the path of its description; or a diagram, which becomes a program of its own
-            ("c", "mex", "sfunction", "fmu2", "fmu3"): its inlets are inputs, its outlets outputs.
+            ("c", "mex", "sfunction", "fmu2", "fmu3", "wasm"): its inlets are inputs, its outlets outputs.
         target: "c" (a package that builds by CMake, tests itself and simulates in real time), "cuda" (kernels, one
             thread a state), "mex" (Matlab, Octave), "sfunction" (Simulink), "fmu2", "fmu3" (FMI, Model Exchange and
             Co-Simulation), "wasm" (WebAssembly with an ES module and a page that simulates), "urdf" or "mjcf" (what
@@ -205,7 +207,7 @@ def _export_diagram(
             Problem(
                 f"diagram '{diagram.name}': no target '{target}'",
                 target,
-                f"a diagram becomes a program, a function of Matlab, a block or an FMU: {', '.join(_DIAGRAMS)}",
+                f"a diagram becomes a program, function of Matlab, block, FMU or module: {', '.join(_DIAGRAMS)}",
                 "use target 'c', or export its mechanisms alone",
             )
         )

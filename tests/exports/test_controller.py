@@ -229,8 +229,8 @@ def test_open_diagrams_that_cannot_leave_are_refused(tmp_path: Path) -> None:
     same.add_inlet("ticks", "pd.v_desired")
     with pytest.raises(sf.DescriptionError, match="an inlet and a block are named 'ticks'"):
         sf.export(same, "c", tmp_path / "c")
-    with pytest.raises(sf.ExportError, match="a function of Matlab, a block or an FMU"):
-        sf.export(rates(), "wasm", tmp_path / "c")
+    with pytest.raises(sf.ExportError, match="a program, function of Matlab, block, FMU or module"):
+        sf.export(rates(), "urdf", tmp_path / "c")
 
 
 def test_matrices_of_inlets_are_not_turned() -> None:

@@ -233,6 +233,6 @@ def test_diagrams_that_cannot_become_programs_are_refused() -> None:
     with pytest.raises(sf.ExportError, match="implicit"):
         sf.export(pendulum(), "c", "unused", method="rodas4")
     with pytest.raises(sf.ExportError, match="becomes a program"):
-        sf.export(pendulum(), "wasm", "unused")
+        sf.export(pendulum(), "urdf", "unused")
     with pytest.raises(sf.DescriptionError, match="no output 'z'"):
         sf.export(pendulum(), "c", "unused", outputs=["pd.z"])

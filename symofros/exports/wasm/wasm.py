@@ -8,6 +8,7 @@ import json
 import re
 import sys
 import tempfile
+from collections.abc import Mapping, Sequence
 from html import escape
 from pathlib import Path
 from string import Template
@@ -54,7 +55,7 @@ def write_wasm(material: Material, folder: Path) -> Exported:
     module = wasm_module(material)
     script = _script(material, module)
     title = escape(material.record.name)
-    fields = {"title": title, "module": script, "segments": _json(segments(material)), "up": json.dumps(up(material))}
+    fields = {"title": title, "module": script, "segments": as_json(segments(material)), "up": json.dumps(up(material))}
     files: dict[str, str | bytes] = {
         f"{name}.mjs": script,
         f"{name}.d.ts": _types(material),
@@ -106,10 +107,23 @@ def wasm_module(material: Material) -> bytes:
         "symofros_wasm.c": native_text("exports/symofros_wasm.c"),
         "module.c": unit_text(material),
     }
+    return compiled(files, ["module.c"])
+
+
+def compiled(files: Mapping[str, str], sources: Sequence[str]) -> bytes:
+    """The bytes of a module.
+
+    Args:
+        files: File name -> text.
+        sources: Names of the files that are compiled.
+
+    Raises:
+        CompileError: The compiler refused.
+    """
     with tempfile.TemporaryDirectory(prefix="symofros-export-") as private:
         for file, text in files.items():
             (Path(private) / file).write_text(text, encoding="utf-8")
-        command = (sys.executable, "-m", "ziglang", "cc", *_LINK, *FLAGS, "module.c")
+        command = (sys.executable, "-m", "ziglang", "cc", *_LINK, *FLAGS, *sources)
         call_compiler(command, "module.wasm", Path(private), "check the package ziglang")
         return (Path(private) / "module.wasm").read_bytes()
 
@@ -128,10 +142,10 @@ def _script(material: Material, module: bytes) -> str:
     }
     sizes = {f"n{key}": len(names[key]) for key in ("q", "v", "z", "u", "par")} | {"nc": record.nc}
     lines = [
-        f"// {_comment(record.name)}: written by {material.generator}; hash {record.hash}.",
+        f"// {as_line(record.name)}: written by {material.generator}; hash {record.hash}.",
         native_text("exports/symofros_wasm.mjs"),
-        f"const STATUSES = {_json(_statuses())};",
-        f"export const names = {_json(names)};",
+        f"const STATUSES = {as_json(statuses())};",
+        f"export const names = {as_json(names)};",
         f"export const sizes = {json.dumps(sizes)};",
         f'const BYTES = "{base64.b64encode(module).decode()}";',
         "",
@@ -145,7 +159,7 @@ def _script(material: Material, module: bytes) -> str:
     return "\n".join(lines)
 
 
-def _statuses() -> dict[str, str]:
+def statuses() -> dict[str, str]:
     """Negative status of the stepping loop -> its meaning, from the comments of its header."""
     return dict(re.findall(r"SYM_\w+ = (-\d+),?\s*/\* (.*?) \*/", native_text("stepping/symofros_stepper.h")))
 
@@ -156,16 +170,17 @@ def _types(material: Material) -> str:
     of_model = " | ".join(json.dumps(name) for name, frame in material.functions if not frame) or "never"
     of_frames = " | ".join(dict.fromkeys(json.dumps(name) for name, frame in material.functions if frame)) or "never"
     return Template(native_text("exports/symofros_wasm.d.ts.in")).substitute(
-        title=_comment(material.record.name), frames=frames, functions=of_model, frame_functions=of_frames
+        title=as_line(material.record.name), frames=frames, functions=of_model, frame_functions=of_frames
     )
 
 
-def _json(data: object) -> str:
+def as_json(data: object) -> str:
     """JSON that can't end a script of a page."""
     return json.dumps(data).replace("<", "\\u003c")
 
 
-def _comment(text: str) -> str:
+def as_line(text: str) -> str:
+    """A text in one line of a comment."""
     return " ".join(text.replace("<", "< ").split())
 
 
