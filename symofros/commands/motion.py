@@ -35,9 +35,9 @@ from symofros.diagrams.files import command as diagrams
 from symofros.diagrams.files.kind import is_diagram
 from symofros.simulation.analysis.kinematics.starts import closed_start, stated_names
 from symofros.simulation.progress import pace_of
-from symofros.simulation.results.ends import INTERRUPTED
+from symofros.simulation.results.ends import INTERRUPTED, UNEXAMINED
 from symofros.simulation.results.plots import MAX_CURVES, check_curves, check_picture, write_picture
-from symofros.simulation.results.saving import check_file
+from symofros.simulation.results.saving import check_file, save_or_keep
 from symofros.simulation.stepping.methods import METHODS
 
 # Exit status of a command that Ctrl-C has ended: 128 and the number of the signal, as of shells.
@@ -142,7 +142,8 @@ def simulate(
                 check_picture(Path(picture))
             system, curves = load(model, reading), names_of(signals) or []
             run = _simulated(system, t_end, given, inputs, curves, every, pace, stated, wanted)
-            files = ([str(run.save(output))] if output else []) + view_options.record_run(run, viewing, system)
+            saved = [str(save_or_keep(run.save, output))] if output else []
+            files = saved + view_options.record_run(run, viewing, system)
             if picture:
                 files.append(_drawn(run, curves, picture))
             _tell(run, files, as_json)
@@ -151,7 +152,7 @@ def simulate(
     except (sf.SymofrosError, ValueError, OSError) as error:
         raise refuse(error) from None
     if not outcome.ok:
-        raise typer.Exit(_STOPPED if outcome.reason == INTERRUPTED.reason else 1)
+        raise typer.Exit(_STOPPED if outcome.reason in (INTERRUPTED.reason, UNEXAMINED.reason) else 1)
 
 
 def _simulated(

@@ -21,6 +21,7 @@ from symofros.description.constraints import KnifeEdge as KnifeEdge
 from symofros.description.constraints import Rod as Rod
 from symofros.description.constraints import Rolling as Rolling
 from symofros.description.contacts import Contact as Contact
+from symofros.description.contacts import entries_by_surface as entries_by_surface
 from symofros.description.events import event_text as event_text
 from symofros.description.forces import Anchor as Anchor
 from symofros.description.forces import Connection as Connection

@@ -36,6 +36,18 @@ _COMPLIANT = {"exponent": 1.5, "dissipation": 0.0, "minimum_velocity": 1e-3, "br
 _MOST = 1000
 
 
+def entries_by_surface() -> dict[str, list[str]]:
+    """Surface -> the entries that not all surfaces have: its measures, whether it may enclose, what may move on it."""
+    return {
+        surface: [
+            *measures,
+            *(["inside"] if surface in HOLLOW else []),
+            *(label for label, surfaces, _ in _MOVING if surface in surfaces),
+        ]
+        for surface, measures in MEASURES.items()
+    }
+
+
 @refuses_unknown_entries
 @dataclass(frozen=True)
 class Contact:

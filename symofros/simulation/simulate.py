@@ -23,6 +23,7 @@ from symofros.simulation.options import SimulationOptions
 from symofros.simulation.prescribed_motions import contradiction, recorded_notes, refuse_contradiction
 from symofros.simulation.progress import bar
 from symofros.simulation.results.acted import failure_of, found_of, notes_of
+from symofros.simulation.results.ends import unexamined
 from symofros.simulation.results.examination.diagnosis import diagnose, too_long
 from symofros.simulation.results.examination.switched_run import SwitchedRun, switched_run_note
 from symofros.simulation.results.notes import distinct, of_steps
@@ -161,9 +162,12 @@ def _held_as_a_whole(
     states = [x[: len(x) - left_out] for x in (run.t, run.q, run.v, run.u)]
     fields: dict[str, Any] = {"par": start[2], "parts": 1 + acted, "stopped": outcome.kind == "event"}
     whole = SwitchedRun(stepper, settings, start[:2], states, run.statistics.steps, **fields)
-    if not outcome.ok:
-        return replace(run, outcome=too_long(whole, outcome)) if acted else run
-    note = "" if of_steps(outcome.notes) else switched_run_note(whole)
+    try:
+        if not outcome.ok:
+            return replace(run, outcome=too_long(whole, outcome)) if acted else run
+        note = "" if of_steps(outcome.notes) else switched_run_note(whole)
+    except KeyboardInterrupt:
+        return replace(run, outcome=unexamined(0, outcome.t, outcome.notes)) if outcome.ok else run
     return replace(run, outcome=replace(outcome, notes=(*outcome.notes, note))) if note else run
 
 
@@ -224,11 +228,15 @@ def _phase(
     recorded = drive(stepper, q, v, settings, show)
     seconds, worked = time.perf_counter() - began, time.thread_time() - worked
     states = recorded.arrays()
-    outcome, bendings = diagnose(stepper, recorded, states, settings, (q, v))
-    outcome = replace(outcome, notes=(*outcome.notes, *event_notes(stepper.run, stepper.events)))
-    if stepper.inputs.callback is not None:
-        notes = recorded_notes(stepper.model.record, states[0], states[3])
-        outcome = replace(outcome, notes=(*outcome.notes, *notes))
+    bendings: tuple[BeamBending, ...] = ()
+    try:
+        outcome, bendings = diagnose(stepper, recorded, states, settings, (q, v))
+        outcome = replace(outcome, notes=(*outcome.notes, *event_notes(stepper.run, stepper.events)))
+        if stepper.inputs.callback is not None:
+            notes = recorded_notes(stepper.model.record, states[0], states[3])
+            outcome = replace(outcome, notes=(*outcome.notes, *notes))
+    except KeyboardInterrupt:
+        outcome = unexamined(recorded.status, float(states[0][-1]))
     met = [found_of(stepper, event) for event in recorded.events]
     notes = tuple(note for event in recorded.events for note in notes_of(stepper, event))  # Strikes at the start.
     phase = _Phase(states, stepper.par, outcome, met, _statistics(stepper, seconds, worked), bendings, notes)

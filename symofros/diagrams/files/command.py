@@ -23,7 +23,7 @@ from symofros.diagrams.simulation import Simulation
 from symofros.errors import Problem, SymofrosError
 from symofros.simulation.progress import pace_of
 from symofros.simulation.results.plots import check_picture, write_picture
-from symofros.simulation.results.saving import check_file
+from symofros.simulation.results.saving import check_file, save_or_keep
 
 WINDOW = "window"
 
@@ -92,7 +92,9 @@ def run_diagram(diagram: Diagram, request: RunRequest, progress: bool) -> Diagra
 
 def write_files(run: DiagramRun, request: RunRequest) -> list[str]:
     """Write the requested files, and return their paths; a window opens last and waits until it is closed."""
-    files = run.save(request.output, *request.signals) if request.output else []
+    files: list[Path] = []
+    if request.output:
+        files = save_or_keep(lambda path: run.save(path, *request.signals), request.output)
     if request.jitter:
         write_picture(histogram(run.cost.late, run.compiled.resolved.wired.name), request.jitter)
         files.append(request.jitter)

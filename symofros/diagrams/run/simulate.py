@@ -42,6 +42,7 @@ from symofros.runtime.model import Model
 from symofros.simulation.analysis.sliding import contact_dynamics
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.progress import bar
+from symofros.simulation.results.ends import unexamined
 from symofros.simulation.results.examination.paths import Numbers
 from symofros.simulation.results.examination.switched_motion import tolerances
 from symofros.simulation.results.outcome import Outcome
@@ -124,8 +125,18 @@ def examined_run(task: PlannedRun, ended: Ended, given: Given, kept: Mapping[str
         given: What external blocks gave.
         kept: What blocks stored.
     """
+    resolved, bendings = task.compiled.resolved, ended.bendings
+    try:
+        outcome = _judged(task, ended, given, bendings)
+    except KeyboardInterrupt:
+        outcome = unexamined(ended.recorded.status, ended.t, (*ended.start_notes, *resolved.notes))
+    return _recorded(task, ended, outcome, bendings, kept)
+
+
+def _judged(task: PlannedRun, ended: Ended, given: Given, bendings: tuple[BeamBending, ...]) -> Outcome:
+    """What is found of a run that has ended; arguments as of `examined_run`, and the bending of its beams."""
     resolved, options, par = task.compiled.resolved, task.options, task.par
-    bendings, (t, q, v, u) = ended.bendings, ended.states
+    t, q, v, u = ended.states
     records = Records(task.compiled, t, q, v, u, par)
 
     def signal(source: Source) -> Array:
@@ -141,8 +152,7 @@ def examined_run(task: PlannedRun, ended: Ended, given: Given, kept: Mapping[str
     outcome = judge_prescribed(outcome, resolved, records.t, signal)
     deep = contact_notes(resolved, resolved.layout.present(par, u), (t, q, v), signal)
     unseen = signal_notes(t, signals_of(records)) if outcome.ok and not ended.loop.fault else ()
-    outcome = replace(outcome, notes=(*outcome.notes, *deep, *unseen))
-    return _recorded(task, ended, outcome, bendings, kept)
+    return replace(outcome, notes=(*outcome.notes, *deep, *unseen))
 
 
 @dataclass(frozen=True)

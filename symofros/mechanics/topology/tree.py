@@ -86,12 +86,19 @@ class NamedFrame:
         qualified: "body.frame", or the body's name for a body frame.
         link: Index of the link it is on, or BASE.
         placement: Steps from the link's frame to it.
+        body: Body that it is of.
     """
 
     name: str
     qualified: str
     link: int
     placement: Placement
+    body: str = ""
+
+    @property
+    def own(self) -> str:
+        """Its name on its body; "" of the body frame."""
+        return self.qualified[len(self.body) + 1 :]
 
 
 @dataclass(frozen=True)
@@ -196,7 +203,7 @@ def build_tree(system: System) -> SpanningTree:
     builder = _Builder(children)
     builder.place(base, BASE, (), WORLD)
     links = tuple(builder.links[i].freeze(builder.inertias[i]) for i in range(len(builder.links)))
-    names = public_names([(own, full) for own, full, _, _ in builder.frames])
+    names = public_names([(own, full) for own, full, *_ in builder.frames])
     frames = tuple(NamedFrame(name, *one[1:]) for name, one in zip(names, builder.frames, strict=True))
     return SpanningTree(system, links, frames, map_coordinates(system, [x.joint for x in links]))
 
@@ -237,7 +244,7 @@ class _Builder:
         self.children = children
         self.links: list[_Draft] = []
         self.inertias: list[list[tuple[Placement, Inertia]]] = []
-        self.frames: list[tuple[str, str, int, Placement]] = []
+        self.frames: list[tuple[str, str, int, Placement, str]] = []
         self.nq = self.nv = 0
 
     def place(self, body: Body, link: int, placement: Placement, key: str) -> None:
@@ -277,14 +284,14 @@ class _Builder:
         """Add a body's inertia and frames to its link; where each of its frames is (None: the body frame)."""
         if body.inertia is not None and link != BASE:
             self.inertias[link].append((placement, body.inertia))
-        self.frames.append((body.name, body.name, link, placement))
+        self.frames.append((body.name, body.name, link, placement, body.name))
         ends: dict[str | None, tuple[int, Placement]] = {None: (link, placement)}
         sections = self._add_sections(body, link) if isinstance(body, Beam) else {}
         for frame in body.frames:
             own = (*placement, Step(frame.position, frame.rotation))
             on, at = sections[frame.station] if sections else (link, own)
             ends[frame.name] = (on, at)
-            self.frames.append((frame.name, f"{body.name}.{frame.name}", on, at))
+            self.frames.append((frame.name, f"{body.name}.{frame.name}", on, at, body.name))
         return ends
 
     def _add_sections(self, beam: Beam, root: int) -> dict[float, tuple[int, Placement]]:

@@ -28,6 +28,11 @@ class End(NamedTuple):
 
 
 INTERRUPTED = End("interrupted", "Ctrl-C; the part up to here is kept")
+UNEXAMINED = End(
+    "interrupted",
+    "Ctrl-C while it was examined; all of the run is kept, and its steps are not judged",
+    "run it again, and wait for its end",
+)
 ENDS: dict[int, End] = {
     Status.FINISHED: End("finished", "the end asked for"),
     Status.TERMINAL_EVENT: End("event", "a terminal event"),
@@ -135,3 +140,14 @@ def beyond_theory(worst: BeamBending, limit: float, notes: tuple[str, ...] = (),
 def past_stability(method: str) -> str:
     """The reason of a run whose step multiplies a mode of the motion."""
     return f"the step is past the limit of stability of '{method}'"
+
+
+def unexamined(status: int, t: float, notes: tuple[str, ...] = ()) -> Outcome:
+    """Outcome of a run whose examination Ctrl-C has ended.
+
+    Args:
+        status: Status of its last step.
+        t: Its last time [s].
+        notes: Notes so far.
+    """
+    return (UNEXAMINED if status >= 0 else ENDS[status]).outcome(t, notes)

@@ -4,16 +4,21 @@ from __future__ import annotations
 
 import csv
 import io
-from collections.abc import Mapping
+import os
+import tempfile
+from collections.abc import Callable, Mapping
+from contextlib import suppress
 from importlib import import_module
 from pathlib import Path
-from typing import Any
+from typing import Any, TypeVar
 
 import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.base.atomic import check_writable, write_atomically
 from symofros.errors import Problem, SymofrosError
+
+T = TypeVar("T")
 
 SUFFIXES = (".npz", ".csv", ".parquet")
 
@@ -41,6 +46,32 @@ def check_file(path: Path, what: str) -> None:
     if path.suffix == ".parquet":
         _pyarrow(what)
     check_writable(path)
+
+
+def save_or_keep(save: Callable[[Path], T], path: Path) -> T:
+    """Save a result; where its file can't be written, such as on a full disk, keep it in another folder.
+
+    Args:
+        save: Writes the result to a path.
+        path: Path of the file.
+
+    Raises:
+        SymofrosError: The file can't be written; it says where the result is kept.
+        OSError: The file can't be written, and no other folder takes the result.
+    """
+    try:
+        return save(path)
+    except OSError as error:
+        for folder in (Path.cwd(), Path.home(), Path(tempfile.gettempdir())):
+            kept = folder / f"{path.stem}-kept-{os.getpid()}{path.suffix}"
+            with suppress(OSError):
+                save(kept)
+                rule = "files are written where there is room, and the right to write"
+                found = error.strerror or str(error)
+                raise SymofrosError(
+                    Problem(f"'{path}' can't be written", found, rule, f"the run is kept: move '{kept}'")
+                ) from None
+        raise
 
 
 def write_npz(path: Path, arrays: Mapping[str, Any]) -> None:

@@ -11,6 +11,9 @@ GROUND = "world"  # The id of the block of the ground, whatever the body without
 # Ports that no frame names: where a body's joint arrives, and the body frame.
 ROOT, ORIGIN = "/root", ""
 
+# Section of what links two frames -> kind of its wires.
+_LINKS = {"closures": "closure", "connections": "connection", "contacts": "contact"}
+
 Block = dict[str, Any]
 
 
@@ -43,7 +46,7 @@ class _Diagram:
         for name, body in self.bodies.items():
             if isinstance(body.get("joint"), dict):
                 self.joint(name, body["joint"])
-        for section, kind in (("closures", "closure"), ("connections", "connection")):
+        for section, kind in _LINKS.items():
             for name, entry in _dict(self.data.get(section)).items():
                 self.link(section, name, _dict(entry), kind)
         for name, entry in _dict(self.data.get("nonholonomic")).items():

@@ -12,7 +12,7 @@ from symofros.description import ExpressionError, parse
 from symofros.description.yaml import NativeFile, default_joint_name, placed_problems
 from symofros.errors import Problem, first_of
 from symofros.studio.editor.editing.data_edits import Path, section_of
-from symofros.studio.editor.editing.formulas import formulas
+from symofros.studio.editor.editing.formulas import formulas, keys_of
 from symofros.studio.editor.editing.yaml_spans import YamlText
 
 ShownProblem = dict[str, Any]
@@ -59,6 +59,7 @@ def placed(problem: Problem, source: YamlText | None, file: str, exact: dict[Pro
         path = exact[problem]
     elif source is not None and (line or not problem.where):
         path = _path_of(problem, source, line)
+    path = (*path, *_left_out(problem.what, path))
     if path and source is not None and line:
         line = source.root.at(path).key_line if source.node(path) else line
     what = problem.what if where in ("", file) or not number.isdigit() else f"{problem.where}: {problem.what}"
@@ -172,6 +173,12 @@ def _by_word(what: str, data: Any) -> Path:
             if path := _first(data, lambda step, _, key=key: step == key):
                 return path
     return ()
+
+
+def _left_out(what: str, entry: Path) -> Path:
+    """The key that a message begins with behind the name of an entry, which may have it and leaves it out."""
+    key = what.rpartition(": ")[2].partition(" ")[0]
+    return (key,) if len(entry) == 2 and key in keys_of(str(entry[0])) else ()
 
 
 def _first(data: Any, matches: Callable[..., bool]) -> Path:

@@ -19,6 +19,16 @@ def formulas(data: Any) -> Iterator[tuple[Path, str]]:
     yield from _formulas(data, [json_schema()], ())
 
 
+def keys_of(section: str) -> set[str]:
+    """The keys that an entry of a section may have."""
+    return {
+        key
+        for entry in _alternatives(json_schema()["properties"].get(section, {}))
+        for one in _alternatives(entry.get("additionalProperties", {}))
+        for key in one.get("properties", {})
+    }
+
+
 def _formulas(data: Any, schemas: list[dict[str, Any]], path: Path) -> Iterator[tuple[Path, str]]:
     known = [one for schema in schemas for one in _alternatives(schema)]
     if isinstance(data, str):

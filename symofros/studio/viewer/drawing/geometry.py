@@ -189,8 +189,7 @@ class _DrawingBuilder:
         return "world" if body in ("world", self.tree.frames[0].qualified) else f"bodies/{body}"
 
     def _frame_element(self, frame: NamedFrame) -> str:
-        body, _, own = frame.qualified.partition(".")
-        return f"bodies/{body}/frames/{own}" if own else self._element(body)
+        return f"bodies/{frame.body}/frames/{frame.own}" if frame.own else self._element(frame.body)
 
     def _boxes(self) -> Iterator[DrawnPart]:
         for body in self.tree.system.bodies:

@@ -15,6 +15,7 @@ MOST_COLORS = 32  # Of one mesh: each is drawn as a mesh of its own.
 MAX_BYTES = 64 << 20  # Of all files that one mesh refers to.
 MAX_FILES = 64
 MAX_PIXELS = 1 << 24
+_NOT_DRAWN = ("emissiveTexture", "metallicRoughnessTexture", "normalTexture", "occlusionTexture")
 _PICTURES = (b"\x89PNG\r\n", b"\xff\xd8\xff")  # What PNG and JPEG files begin with.
 
 
@@ -47,6 +48,21 @@ class FilesBeside:
         return data
 
     __getitem__ = get
+
+
+def leave_out_pictures(scene: Any) -> None:
+    """Leave out the pictures within a file (glTF) that are not drawn, or too large to be unpacked, before they are."""
+    for surface in scene.geometry.values():
+        look = getattr(surface.visual, "material", None)
+        for name in ("baseColorTexture", *_NOT_DRAWN):
+            picture = getattr(look, name, None)
+            if picture is not None and (name in _NOT_DRAWN or not _is_small(picture)):
+                setattr(look, name, None)
+
+
+def _is_small(picture: Any) -> bool:
+    """Whether a picture that is not unpacked yet is PNG or JPEG, of no more than MAX_PIXELS."""
+    return picture.format in ("PNG", "JPEG") and picture.width * picture.height <= MAX_PIXELS
 
 
 def picture_at(file: Path) -> Any:

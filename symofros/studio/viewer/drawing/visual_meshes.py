@@ -16,12 +16,12 @@ from symofros.base.arrays import Array
 from symofros.description import Visual, kind_of
 from symofros.studio.viewer.drawing.collada import read_collada
 from symofros.studio.viewer.drawing.decimation import clustered
-from symofros.studio.viewer.drawing.mesh_colors import FilesBeside, few_colors, picture_at
+from symofros.studio.viewer.drawing.mesh_colors import FilesBeside, few_colors, leave_out_pictures, picture_at
 from symofros.studio.viewer.drawing.meshes import Mesh, box, cylinder, merged, sphere
 
 MAX_BYTES = 64 << 20
 MAX_FACES = 500_000
-SUFFIXES = (".stl", ".obj", ".dae", ".ply", ".off")
+SUFFIXES = (".stl", ".obj", ".dae", ".ply", ".off", ".glb")
 
 
 def visual_mesh(visual: Visual) -> Mesh | None:
@@ -134,6 +134,7 @@ def _loaded(file: Path, data: bytes) -> Mesh:
         # Of bytes: what the file refers to is opened by ours alone.
         beside = FilesBeside(file.parent)
         scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, process=False, resolver=beside)
+        leave_out_pictures(scene)
         return merged([_with_colors(surface) for surface in scene.dump()])
     except Exception as error:  # noqa: BLE001 - its readers raise whatever a bad file makes them stumble over.
         raise ValueError(f"not a {file.suffix} file: {error}") from None
@@ -151,8 +152,10 @@ def _with_colors(surface: Any) -> Mesh:
     places = None if look.uv is None else np.asarray(look.uv, dtype=np.float64)[faces].mean(axis=1)
     if hash(look.material) == hash(import_module("trimesh.visual.material").empty_material()):
         return Mesh(vertices, faces, places=places)  # It has places in a picture, which is not there.
-    if places is None or getattr(look.material, "image", None) is None:
-        colors = np.tile(look.material.main_color, (len(faces), 1))
-    else:
+    colors = np.tile(look.material.main_color, (len(faces), 1))
+    if places is not None and getattr(look.material, "image", None) is not None:
         colors = look.material.to_color(places)
+    elif places is not None and getattr(look.material, "baseColorTexture", None) is not None:
+        shares = colors / 255.0 if look.material.baseColorFactor is not None else 1.0  # Both count, as in glTF.
+        colors = np.rint(look.material.to_color(places) * shares).astype(np.uint8)
     return Mesh(vertices, faces, few_colors(np.asarray(colors)[:, :3]), places)

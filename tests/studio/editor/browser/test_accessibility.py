@@ -30,6 +30,12 @@ def test_the_page_and_its_windows_are_accessible(
     opened("robot.yaml", source=steps.ROBOT)
     assert faults() == []
     steps.open_window(page, "bodies/link1")
+    expect(steps.window(page).get_by_role("img", name="The beam and its first vibrations")).to_be_visible()
+    expect(steps.window(page).get_by_label("EA", exact=True)).to_have_count(0)
+    assert faults() == []
+    picture(f"beam-{theme}")
+    steps.window(page).get_by_label("Shown", exact=True).select_option("all")
+    expect(steps.window(page).get_by_label("EA", exact=True)).to_be_visible()
     assert faults() == []
     for name in ("Joint", "Frames", "Forces"):
         steps.tab(page, name)
@@ -82,7 +88,7 @@ def test_a_diagram_and_its_windows_are_accessible(opened: Serve, page: Page, fau
 KINDS = {
     "model": (
         "bodies/link1",
-        ("Shape functions along y", "Shape functions of shear along z", "Length"),
+        ("Shape functions along y", "Shape functions of twist", "Length"),
         "Simulate",
         {"Duration": "0.3"},
     ),

@@ -58,6 +58,7 @@ WINDOWS: dict[str, Callable[[Page, Server], None]] = {
     "Keys": _key("?"),
     "Find": _key("Control+k"),
     "System": lambda page, server: steps.menu(page, "Edit", "System"),
+    "Contact": lambda page, server: page.get_by_role("button", name="Contact", exact=True).click(),
     "Export": lambda page, server: steps.run(page, "Export…"),
     "The file has changed on disk": _changed_on_disk,
     "Unsaved changes": _discard,

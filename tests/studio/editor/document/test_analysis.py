@@ -103,11 +103,21 @@ def test_every_reference_model_is_drawn_whole(name: str) -> None:
     bases = sum("joint" not in body for body in data["bodies"].values())
     assert len(blocks) == len(graph["nodes"]) == len(data["bodies"]) + 1 - bases + len(data.get("nonholonomic", {}))
     assert len([edge for edge in graph["edges"] if edge["kind"] == "joint"]) == len(data["bodies"]) - bases
-    assert len([edge for edge in graph["edges"] if edge["kind"] == "closure"]) == len(data.get("closures", {}))
+    for kind in ("closure", "connection", "contact"):
+        assert len([edge for edge in graph["edges"] if edge["kind"] == kind]) == len(data.get(f"{kind}s", {})), kind
     for edge in graph["edges"]:
         assert {(edge["source"], edge["source_port"]), (edge["target"], edge["target_port"])} <= ports
         assert all(step in (data := data[step] and data) for step in edge["path"][:1])
     assert len({edge["id"] for edge in graph["edges"]}) == len(graph["edges"])
+
+
+def test_a_measure_that_a_contact_lacks_is_marked_at_its_own_key(tmp_path: Path) -> None:
+    text = """symofros: 1
+bodies: {ball: {joint: {kind: free, name: j}, inertia: {mass: 1, moments: [1, 1, 1]}}}
+contacts: {c: {first: {body: ball}, second: {body: world}, stiffness: 1e4, surface: box}}
+"""
+    (problem,) = analyse(tmp_path / "c.yaml", text).problems
+    assert problem["path"] == ["contacts", "c", "size"] and problem["line"] == 3
 
 
 NO_DOCUMENTS = (

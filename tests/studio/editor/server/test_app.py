@@ -134,7 +134,7 @@ def test_every_template_of_the_palette_is_valid_as_it_stands(client: TestClient)
     assert {"kg", "N m"} <= set(catalogue["units"]) and {"c", "fmu3"} <= set(catalogue["targets"])
     schema = Draft202012Validator(catalogue["schema"])
     # On the world alone, a massless body has nothing to carry, and constraints nothing to hold.
-    own = {"massless_body", "closure", "rod", "connection", "nonholonomic"}
+    own = {"massless_body", "closure", "rod", "connection", "contact", "nonholonomic"}
     for part in PALETTE:
         path = (part["section"], part["name"])
         found = analyse(FILES["double_pendulum"], apply(TEXTS["double_pendulum"], Edit("set", path, part["template"])))

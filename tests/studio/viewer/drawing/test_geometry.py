@@ -180,3 +180,14 @@ def test_contacts_show_their_balls_and_the_solids_that_push_them() -> None:
     hollow = replace(touch, surface="cylinder", surface_radius=0.5, size=None, inside=True)
     names = [part.name for part in Mechanism(sf.System("s", [ball, other], connections=[hollow])).drawing().parts]
     assert "constraints/c.balls" in names and "constraints/c.surface" not in names
+
+
+def test_names_with_dots_lead_to_the_elements_that_have_them() -> None:
+    inertia = sf.Inertia(1.0, (0, 0, 0), (1, 1, 1))
+    inner = sf.RigidBody("arm", sf.Joint("j", "revolute"), inertia, [sf.Frame("left.tip", (1, 0, 0))])
+    outer = sf.RigidBody(
+        "arm.left", sf.Joint("k", "revolute", "arm", "left.tip"), inertia, [sf.Frame("end", (1, 0, 0))]
+    )
+    drawn = Mechanism(sf.System("s", [inner, outer])).drawing()
+    elements = {triad.element for triad in drawn.triads}
+    assert {"bodies/arm/frames/left.tip", "bodies/arm.left", "bodies/arm.left/frames/end"} <= elements

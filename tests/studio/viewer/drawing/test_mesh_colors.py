@@ -8,6 +8,9 @@ from pathlib import Path
 import numpy as np
 import pytest
 from PIL import Image
+from trimesh import Trimesh
+from trimesh.visual import TextureVisuals
+from trimesh.visual.material import PBRMaterial
 
 from symofros.description.visual import Visual
 from symofros.studio.viewer.drawing import mesh_colors
@@ -124,3 +127,22 @@ def test_invalid_pictures_leave_the_color(content: bytes | None, tmp_path: Path)
         file.write_bytes(content)
     with pytest.warns(UserWarning, match=r"picture 'picture\.png' is not drawn"):
         assert painted(Visual("box", (1.0, 1.0, 1.0), color=GREEN, picture=str(file))) == [GREEN]
+
+
+@pytest.mark.parametrize("factor", [None, [128, 128, 128, 255]])
+def test_faces_have_the_colors_of_pictures_within_the_file(
+    factor: list[int] | None, tmp_path: Path, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """Of .glb, whose pictures lie in it; a picture that is too large leaves the color of its material."""
+    pixels = np.zeros((4, 4, 3), np.uint8)
+    pixels[:, :2], pixels[:, 2:] = RED, BLUE
+    look = PBRMaterial(baseColorTexture=Image.fromarray(pixels), baseColorFactor=factor)
+    corners = np.array([[0, 0, 0], [1, 0, 0], [0, 1, 0], [0, 0, 1], [1, 0, 1], [0, 1, 1]], float)
+    places = np.repeat([[0.1, 0.5], [0.9, 0.5]], 3, axis=0)
+    surface = Trimesh(corners, [[0, 1, 2], [3, 4, 5]], process=False, visual=TextureVisuals(places, material=look))
+    (tmp_path / "part.glb").write_bytes(surface.export(file_type="glb"))
+    share = 1 if factor is None else 128 / 255
+    assert colors_of(tmp_path / "part.glb") == sorted(tuple(round(x * share) for x in color) for color in (RED, BLUE))
+    monkeypatch.setattr(mesh_colors, "MAX_PIXELS", 15)
+    (tmp_path / "other.glb").write_bytes((tmp_path / "part.glb").read_bytes())
+    assert set(colors_of(tmp_path / "other.glb")) == {tuple(factor[:3]) if factor else (102, 102, 102)}

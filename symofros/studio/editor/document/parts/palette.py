@@ -5,6 +5,7 @@ from __future__ import annotations
 from typing import Any
 
 import symofros
+from symofros.description import entries_by_surface
 from symofros.description.yaml import SectionEntry, SolidEntry, json_schema
 from symofros.exports.exporting import TARGETS
 from symofros.simulation.stepping.methods import METHODS
@@ -94,6 +95,22 @@ PALETTE: tuple[Json, ...] = (
         "template": {**_ANCHORS, "stiffness": 100.0, "length": 1.0, "damping": 1.0},
     },
     {
+        "kind": "contact",
+        "section": "contacts",
+        "name": "touch",
+        "title": "Contact",
+        "help": "A ball that a surface pushes back where it penetrates it.",
+        "template": {**_ANCHORS, "stiffness": 1e5, "exponent": 1.0, "friction": 0.5},
+    },
+    {
+        "kind": "contact",
+        "section": "contacts",
+        "name": "touch",
+        "title": "Rigid contact",
+        "help": "A ball on a surface: it strikes, slides, sticks and parts.",
+        "template": {**_ANCHORS, "restitution": 0.5, "friction": 0.5},
+    },
+    {
         "kind": "nonholonomic",
         "section": "nonholonomic",
         "name": "skate",
@@ -141,6 +158,10 @@ def catalogue() -> Json:
         "methods": methods,
         "units": list(UNITS),
         "targets": list(TARGETS),
-        "sizes": {"section": SectionEntry.sizes_by_shape(), "solid": SolidEntry.sizes_by_shape()},
+        "sizes": {
+            "section": SectionEntry.sizes_by_shape(),
+            "solid": SolidEntry.sizes_by_shape(),
+            "contact": entries_by_surface(),
+        },
         "diagram": diagram_catalogue(),
     }

@@ -1,7 +1,7 @@
 import { expect, test } from "vitest";
 
 import type { BentBeam, Job } from "../src/api/jobs";
-import { badge, bentBy, percent } from "../src/model/bending";
+import { badge, bentBy, cantilever, percent } from "../src/model/bending";
 
 const bent = (beam: string, error: number | null): BentBeam => ({
   beam,
@@ -44,4 +44,13 @@ test("of a beam in segments the worst counts, and of a model that has changed no
   expect(bentBy(run, 3).get("mast")?.error).toBeNull();
   expect(bentBy(run, 4).size).toBe(0);
   expect(bentBy(undefined, 3).size).toBe(0);
+});
+
+test("a vibrating cantilever is clamped at its root, swings by 2 at its tip, and has a node more in each mode", () => {
+  for (const mode of [0, 1, 2]) {
+    expect(cantilever(mode, 0)).toBe(0);
+    expect(Math.abs(cantilever(mode, 1))).toBeCloseTo(2, 9);
+    const along = Array.from({ length: 200 }, (_, i) => cantilever(mode, 0.01 + 0.0049 * i));
+    expect(along.filter((value, i) => i > 0 && value * (along[i - 1] ?? 0) < 0)).toHaveLength(mode);
+  }
 });

@@ -27,7 +27,7 @@ export interface Port {
 }
 
 export type NodeKind = "base" | "rigid_body" | "massless_body" | "beam" | "nonholonomic";
-export type EdgeKind = "joint" | "closure" | "connection" | "constraint";
+export type EdgeKind = "joint" | "closure" | "connection" | "contact" | "constraint";
 
 export interface GraphNode {
   id: string;
@@ -223,8 +223,8 @@ export interface Catalogue {
   methods: Method[];
   units: string[];
   targets: string[];
-  /** Sizes of each shape of a section and of a solid. */
-  sizes: Record<"section" | "solid", Sizes>;
+  /** Sizes of each shape of a section and of a solid; entries of each surface of a contact. */
+  sizes: Record<"section" | "solid" | "contact", Sizes>;
   diagram: DiagramCatalogue;
   version?: string;
 }

@@ -5,7 +5,7 @@ import { Expression } from "./Expression";
 import { ListField } from "./List";
 import { MapField } from "./Map";
 import { Moments } from "./Moments";
-import { OneOf } from "./OneOf";
+import { begun, OneOf } from "./OneOf";
 import { isReference, Reference } from "./Reference";
 import { useForm } from "./context";
 import { RecordField } from "./Record";
@@ -68,18 +68,22 @@ export function FieldControl({ name, field, value, onChange, path, label, siblin
 
 /** A record that may be left out is added and removed as a whole. */
 function OptionalRecord({ value, onChange, path, label, field }: Omit<FieldProps, "name" | "siblings">) {
+  const { root } = useForm();
   const { shape, optional } = field;
   if (shape.kind !== "record") return null;
-  if (!isMap(value) && optional) {
+  if (value === undefined && optional) {
     return (
-      <button type="button" className="small" onClick={() => onChange({})}>
+      <button type="button" className="small" onClick={() => onChange(begun(root, shape))}>
         Add {label.toLowerCase()}
       </button>
     );
   }
+  // Its short form is what it can't be without.
+  const short = shape.required[0];
+  const record = isMap(value) || value === undefined || short === undefined ? value : { [short]: value };
   return (
-    <div className="group">
-      <RecordField shape={shape} value={value} onChange={onChange} path={path} />
+    <div className="group" role="group" aria-label={label}>
+      <RecordField shape={shape} value={record} onChange={onChange} path={path} />
       {optional ? (
         <button type="button" className="small quiet" onClick={() => onChange(undefined)}>
           Remove {label.toLowerCase()}

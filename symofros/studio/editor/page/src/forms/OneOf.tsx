@@ -3,7 +3,7 @@ import { isMap } from "../model/paths";
 import { FieldControl } from "./Field";
 import { useForm } from "./context";
 import { isReference } from "./Reference";
-import { field, label as words } from "./schema";
+import { field, label as words, type Shape } from "./schema";
 
 interface Props {
   value: Json | undefined;
@@ -13,7 +13,11 @@ interface Props {
   properties: JsonMap;
 }
 
-/** What a record of required fields starts as. */
+/** What a record starts as: its required fields. */
+export const begun = (root: JsonMap, { required, properties }: Shape & { kind: "record" }): JsonMap =>
+  Object.fromEntries(required.map((key) => [key, start(root, properties[key] as JsonMap, key)]));
+
+/** What an entry starts as. */
 export function start(root: JsonMap, schema: JsonMap, name = ""): Json {
   const { shape, fallback } = field(root, schema);
   if (fallback !== undefined && fallback !== null) return fallback;
@@ -27,7 +31,7 @@ export function start(root: JsonMap, schema: JsonMap, name = ""): Json {
         Array.from({ length: shape.columns }, (_, j) => (i === j ? 1 : 0)),
       );
     case "record":
-      return Object.fromEntries(shape.required.map((key) => [key, start(root, shape.properties[key] as JsonMap, key)]));
+      return begun(root, shape);
     case "list":
     case "set":
       return [];

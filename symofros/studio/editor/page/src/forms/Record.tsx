@@ -65,7 +65,7 @@ function Row({
           label={words}
           siblings={record}
         />
-        {complaint === null || isFormula ? null : (
+        {complaint === null || (isFormula && value !== undefined) ? null : (
           <div className="complaint" role="alert">
             {complaint}
           </div>

@@ -150,6 +150,12 @@ const LABELS: Record<string, string> = {
   realtime: "Pace",
   // What a key means in one record alone.
   "JointEntry.name": "Joint name", // The window has the name of the body, too.
+  "ContactEntry.first": "Frame of the balls",
+  "ContactEntry.second": "Frame of the surface",
+  "ContactEntry.radius": "Radius of the balls",
+  "ContactEntry.points": "Centres of the balls",
+  "ContactEntry.rim": "Radius of the rim",
+  "ContactEntry.segment": "Length of the segment",
   "noise.kind_": "Distribution",
   "sequence.kind_": "Between samples",
   "chirp.first": "First frequency",

@@ -32,3 +32,13 @@ export function bentBy(job: Job | undefined, revision: number): ReadonlyMap<stri
 /** Where along the beam, and when. */
 export const where = ({ station, t }: BentBeam): string =>
   `x = ${brief(station)} m${t === null ? "" : `, t = ${brief(t)} s`}`;
+
+/** Roots of 1 + cos(b) cosh(b) = 0, as in symofros/studio/editor/document/figures/beam_figures.py. */
+const ROOTS = [1.875104068711961, 4.694091132974174, 7.854757438237612];
+
+/** Deflection of a uniform cantilever in one of its first three vibrations at x/L; 2 at its tip, or -2. */
+export function cantilever(mode: number, xi: number): number {
+  const b = ROOTS[mode] ?? 0;
+  const ratio = (Math.cosh(b) + Math.cos(b)) / (Math.sinh(b) + Math.sin(b));
+  return Math.cosh(b * xi) - Math.cos(b * xi) - ratio * (Math.sinh(b * xi) - Math.sin(b * xi));
+}

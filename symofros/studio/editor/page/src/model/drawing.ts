@@ -26,7 +26,7 @@ const FILLS = {
   beam: "#f0f6ee",
   nonholonomic: "#f7f1fa",
 };
-const DASHES = { joint: "", closure: "6 4", connection: "2 3", constraint: "6 2" };
+const DASHES = { joint: "", closure: "6 4", connection: "2 3", contact: "1 4", constraint: "6 2" };
 const MARGIN = 24;
 
 const escaped = (text: string): string => text.replace(/[&<>"]/g, (sign) => `&#${sign.charCodeAt(0)};`);

@@ -57,7 +57,7 @@ export function tieMiddle(from: Point, to: Point, lane: number): Point {
 
 /** Which of the ties each edge is. */
 export function lanes(edges: readonly GraphEdge[]): Map<string, number> {
-  const ties = edges.filter((edge) => edge.kind === "closure" || edge.kind === "connection");
+  const ties = edges.filter((edge) => ["closure", "connection", "contact"].includes(edge.kind));
   return new Map(ties.map((edge, i) => [edge.id, i]));
 }
 

@@ -13,6 +13,7 @@ export const GLYPHS: Record<string, string> = {
   rod: "M4 12 12 4M2.5 12a1.5 1.5 0 1 0 3 0 1.5 1.5 0 1 0-3 0M10.5 4a1.5 1.5 0 1 0 3 0 1.5 1.5 0 1 0-3 0",
   spring: "M1 8h2l1-3 2 6 2-6 2 6 2-6 1 3h2",
   connection: "M1 8h2l1-3 2 6 2-6 2 6 2-6 1 3h2",
+  contact: "M8 2.5a3.5 3.5 0 1 0 0 7 3.5 3.5 0 1 0 0-7M1.5 10h13M3 13l2-3M7 13l2-3M11 13l2-3",
   nonholonomic: "M8 2.5a5 5 0 1 0 0 10 5 5 0 1 0 0-10M8 7.5l3-2.5M1.5 14.5h13",
   parameter: "M3 5h10M3 11h10M6 3v4M10.5 9v4",
   input: "M2 8h8M7 5l3 3-3 3M13 3v10",

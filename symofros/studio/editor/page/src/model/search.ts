@@ -24,7 +24,7 @@ export function everything(document: Document): Hit[] {
     if (isMap(value) && isMap(value["joint"])) hits.push({ what: `joint of ${body}`, name: jointName(data, body), id });
     for (const frame of frameNames(data, body)) hits.push({ what: `frame of ${body}`, name: frame, id });
   }
-  for (const section of ["closures", "connections", "nonholonomic"] as const) {
+  for (const section of ["closures", "connections", "contacts", "nonholonomic"] as const) {
     for (const name of Object.keys(mapAt(data, [section])))
       hits.push({ what: section.replace(/s$/, ""), name, id: `${section}/${name}` });
   }

@@ -3,9 +3,12 @@
 import type { Json, JsonMap, Sizes } from "../api/types";
 import { isMap, textAt } from "./paths";
 
+/** The shape of an entry: of a contact its surface, a plane unless it is stated. */
+const shapeOf = (entry: JsonMap): string => textAt(entry, ["shape"]) ?? textAt(entry, ["surface"]) ?? "plane";
+
 /** Sizes of other shapes than an entry's own. */
 function foreign(entry: JsonMap, sizes: Sizes): Set<string> {
-  const own = sizes[textAt(entry, ["shape"]) ?? ""];
+  const own = sizes[shapeOf(entry)];
   return new Set(
     own === undefined ? [] : Object.values(sizes).flatMap((all) => all.filter((one) => !own.includes(one))),
   );

@@ -45,7 +45,7 @@ export function treeRows({ graph, diagram }: Document): TreeRow[] {
     ...bodies.filter(({ kind }) => kind === "base").flatMap((node) => subtree(graph, node, seen)),
     ...bodies.flatMap((node) => (seen.has(node.id) ? [] : subtree(graph, node, seen))),
     ...graph.edges
-      .filter(({ kind }) => kind === "closure" || kind === "connection")
+      .filter(({ kind }) => ["closure", "connection", "contact"].includes(kind))
       .map(({ id, label, kind }) => ({ id, title: label, what: kind, depth: 0 })),
     ...graph.nodes
       .filter(({ kind }) => kind === "nonholonomic")

@@ -2,6 +2,7 @@ import type { DragEvent, ReactNode } from "react";
 
 import type { PaletteItem } from "../api/types";
 import { DRAGGED } from "../canvas/Board";
+import { LINKS } from "../model/sections";
 import { add, selectedBodies } from "../store/bodies";
 import { insertPart } from "../store/clipboard";
 import { show, useStore } from "../store/store";
@@ -43,7 +44,7 @@ function Group({ title, items, children }: GroupProps) {
       <h2>{title}</h2>
       {items.map((item) => (
         <Entry
-          key={item.name}
+          key={item.title}
           glyph={item.kind}
           title={item.title}
           help={item.help}
@@ -68,7 +69,7 @@ export function Palette() {
   return (
     <nav className="palette" aria-label="Palette">
       <Group title="Bodies" items={of(["bodies"])} />
-      <Group title="Constraints and links" items={of(["closures", "connections", "nonholonomic"])}>
+      <Group title="Constraints and links" items={of([...LINKS, "nonholonomic"])}>
         <Entry
           glyph="motor"
           title="Coupling…"

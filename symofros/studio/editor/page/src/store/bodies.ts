@@ -2,7 +2,8 @@
 
 import type { Edit, Json, JsonMap, PaletteItem, Point } from "../api/types";
 import { frameNames, fresh, symbols } from "../model/names";
-import { isMap, mapAt, textAt } from "../model/paths";
+import { at, isMap, mapAt, textAt } from "../model/paths";
+import { beside } from "../model/sections";
 import { usesOf } from "../model/uses";
 import { addEntry, edit, place } from "./edits";
 import { reveal } from "./folding";
@@ -29,13 +30,13 @@ export function carrier(): Anchor | null {
 
 const anchor = ({ body, frame }: Anchor): JsonMap => (frame === "" ? { body } : { body, frame });
 
-/** A template's ends on the selected bodies: of a link on two, of a condition on one. */
+/** A template's ends on the selected bodies: of a link on one or two, of a condition on one. */
 function aimed(template: Json): Json {
   if (!isMap(template)) return template;
   const [first, second, ...more] = selectedFrames();
   if (first === undefined || more.length > 0) return template;
   if ("first" in template)
-    return second === undefined ? template : { ...template, first: anchor(first), second: anchor(second) };
+    return { ...template, first: anchor(first), ...(second === undefined ? {} : { second: anchor(second) }) };
   if (second !== undefined) return template;
   return Object.fromEntries(
     Object.entries(template).map(([key, value]) => [
@@ -90,21 +91,12 @@ export function mount(body: string, on: Anchor): Promise<boolean> {
   return edit(`mount ${body}`, [{ op: "set", path: [...joint, "parent"], value: on.body }, ...frame]);
 }
 
-export type Join = "closure" | "rod" | "spring";
-
-/** Joins two frames: they stay together, or at a distance, or a spring is between them. */
-export async function join(kind: Join, first: Anchor, second: Anchor): Promise<void> {
-  const section = kind === "spring" ? "connections" : "closures";
-  const stem = kind === "spring" ? "spring" : kind === "rod" ? "rod" : "loop";
-  const more: JsonMap = kind === "spring" ? { stiffness: 100, length: 1 } : kind === "rod" ? { length: 1 } : {};
-  const value = { first: anchor(first), second: anchor(second), ...more };
-  const name = await addEntry(
-    section,
-    stem,
-    (data) => Object.keys(mapAt(data, [section])),
-    () => value,
-  );
-  if (name !== undefined) showUnlessBusy({ kind: "properties", path: [section, name] });
+/** Links two frames as a palette entry says: they stay together, a spring is between them, one touches the other. */
+export async function join(item: PaletteItem, first: Anchor, second: Anchor): Promise<void> {
+  const value = { ...mapAt(item.template, []), first: anchor(first), second: anchor(second) };
+  const taken = (data: JsonMap): string[] => Object.keys(mapAt(data, [item.section]));
+  const name = await addEntry(item.section, item.name, taken, () => value);
+  if (name !== undefined) showUnlessBusy({ kind: "properties", path: [item.section, name] });
 }
 
 /** Edits that take an element of the diagram away, with what cannot be without it. */
@@ -121,7 +113,12 @@ function removal(id: string): Edit[] {
   const [section, name] = path;
   if (name === undefined) return [];
   const uses = section === "bodies" ? usesOf(data(), String(name)) : [];
-  return [...uses, path].map((each) => ({ op: "remove", path: each }));
+  // A switch goes with its constraint.
+  return [...uses, path].flatMap((each): Edit[] => {
+    const other = each[0] === "bodies" ? null : beside(each);
+    const gone = other !== null && at(data(), other) !== undefined ? [other, each] : [each];
+    return gone.map((one) => ({ op: "remove", path: one }));
+  });
 }
 
 export async function remove(ids: string[]): Promise<void> {

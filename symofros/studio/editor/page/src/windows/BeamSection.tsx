@@ -30,7 +30,7 @@ const UNITS: Record<string, string> = {
 };
 
 /** What the server says of the beam as it is typed; while it can't be read, what was said before. */
-function useFigures(beam: JsonMap): BeamFigures | null {
+export function useFigures(beam: JsonMap): BeamFigures | null {
   const [figures, setFigures] = useState<BeamFigures | null>(null);
   const question = JSON.stringify({ beam });
   useEffect(() => {
@@ -49,8 +49,7 @@ function useFigures(beam: JsonMap): BeamFigures | null {
 }
 
 /** Frequencies, how far its theory reaches and, of a section by its shape, what it brings. */
-function Figures({ beam, name }: { beam: JsonMap; name: string }) {
-  const figures = useFigures(beam);
+function Figures({ beam, name, figures }: { beam: JsonMap; name: string; figures: BeamFigures | null }) {
   const { revision } = useDocument();
   const bent = bentBy(
     useStore((state) => state.jobs.simulate),
@@ -97,10 +96,11 @@ interface Props {
   properties: readonly string[];
   /** Formulas of the beam that it does not. */
   others: readonly string[];
+  figures: BeamFigures | null;
 }
 
 /** The section: by its properties per length, or by material and shape; with the frequencies that follow. */
-export function BeamSection({ beam, onChange, path, properties, others }: Props) {
+export function BeamSection({ beam, onChange, path, properties, others, figures }: Props) {
   const { root } = useForm();
   const catalogue = useStore((state) => state.catalogue);
   const { shape } = definition(root, "BeamEntry");
@@ -141,7 +141,7 @@ export function BeamSection({ beam, onChange, path, properties, others }: Props)
       ) : (
         <RecordField shape={shape} value={beam} onChange={onChange} path={path} only={properties} />
       )}
-      <Figures beam={beam} name={String(path[1] ?? "")} />
+      <Figures beam={beam} name={String(path[1] ?? "")} figures={figures} />
     </>
   );
 }

@@ -1,39 +1,37 @@
+import { LINKS } from "../model/sections";
 import { Window } from "../shell/Window";
 import { Glyph } from "../shell/Glyph";
-import { join, type Join } from "../store/bodies";
+import { join } from "../store/bodies";
 import { DocsPage } from "./Help";
-import { type Anchor, dismiss } from "../store/store";
-
-const KINDS: readonly { kind: Join; glyph: string; title: string; help: string }[] = [
-  { kind: "closure", glyph: "closure", title: "Closure", help: "the two frames stay together: a loop is closed" },
-  { kind: "rod", glyph: "rod", title: "Rod", help: "massless; the origins stay at a distance" },
-  { kind: "spring", glyph: "spring", title: "Spring and damper", help: "a force along the line between the origins" },
-];
+import { type Anchor, dismiss, useStore } from "../store/store";
 
 const words = ({ body, frame }: Anchor): string => (frame === "" ? body : `${body}.${frame}`);
 
-/** What joins two frames. */
+/** What joins two frames: the links of the palette. */
 export function LinkForm({ first, second }: { first: Anchor; second: Anchor }) {
+  const palette = useStore((state) => state.catalogue?.palette) ?? [];
   return (
     <Window title={`Join ${words(first)} and ${words(second)}`} onClose={dismiss}>
       <div className="picks">
-        {KINDS.map(({ kind, glyph, title, help }) => (
-          <button
-            key={kind}
-            type="button"
-            onClick={() => {
-              dismiss();
-              void join(kind, first, second);
-            }}
-          >
-            <Glyph name={glyph} size={20} />
-            <span>
-              <b>{title}</b>
-              <br />
-              <span className="quiet">{help}</span>
-            </span>
-          </button>
-        ))}
+        {palette
+          .filter(({ section }) => LINKS.includes(section))
+          .map((item) => (
+            <button
+              key={item.title}
+              type="button"
+              onClick={() => {
+                dismiss();
+                void join(item, first, second);
+              }}
+            >
+              <Glyph name={item.kind} size={20} />
+              <span>
+                <b>{item.title}</b>
+                <br />
+                <span className="quiet">{item.help}</span>
+              </span>
+            </button>
+          ))}
       </div>
       <DocsPage page="docs/howto/closed_loops.md" />
     </Window>

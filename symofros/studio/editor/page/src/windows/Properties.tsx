@@ -11,17 +11,18 @@ import { Window } from "../shell/Window";
 import { edit } from "../store/edits";
 import { enter } from "../store/files";
 import { closing, dismiss, useDocument, useStore } from "../store/store";
-import { SYSTEM } from "../model/sections";
+import { beside, SYSTEM } from "../model/sections";
 import { BodyForm } from "./BodyForm";
 import { DiagramForm } from "./DiagramForm";
 import { EntryForm } from "./EntryForm";
 import { Help } from "./Help";
-import { GravityForm, SystemForm } from "./SystemForm";
+import { GravityForm, SwitchForm, SystemForm } from "./SystemForm";
 
 const NOUNS: Record<string, string> = {
   bodies: "Body",
   closures: "Closure",
   connections: "Connection",
+  contacts: "Contact",
   nonholonomic: "Condition",
   blocks: "Block",
   models: "Model",
@@ -49,7 +50,8 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
   const [draft, setDraft] = useState<Json | undefined>(before);
   // The base is the ground, and gravity is what the ground has, whether it is a body or not.
   const isGround = section === "bodies" && isMap(draft) && draft["joint"] === undefined;
-  const [ground, setGround] = useState<Json | undefined>(() => at(data, ["system"]));
+  const other = useMemo(() => (diagram === null ? beside(path) : null), [diagram, path]);
+  const [aside, setAside] = useState<Json | undefined>(() => (other === null ? undefined : at(data, other)));
   const [renames, setRenames] = useState<Renames>({});
   const name = renames[keyOf(path)] ?? String(path.at(-1));
   const [hint, setHint] = useState("");
@@ -61,8 +63,8 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
   );
   const newest = useRef(draft);
   newest.current = draft;
-  const newestGround = useRef(ground);
-  newestGround.current = ground;
+  const newestAside = useRef(aside);
+  newestAside.current = aside;
   const context = useMemo<FormContext>(
     () => ({
       root: schema ?? {},
@@ -73,9 +75,9 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
       type,
       hint: setHint,
       draft: (place) => {
-        const isOfGround = !isSystem && place[0] === "system";
-        const whole = isSystem || isOfGround ? place.slice(0, 1) : path;
-        const value = isOfGround ? newestGround.current : isSystem ? at(newest.current, whole) : newest.current;
+        const isAside = place[0] === other?.[0];
+        const whole = isSystem ? place.slice(0, 1) : isAside && other !== null ? other : path;
+        const value = isAside ? newestAside.current : isSystem ? at(newest.current, whole) : newest.current;
         return value === undefined ? null : { path: whole, value };
       },
       choices: (key, record) => {
@@ -86,7 +88,7 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
         return key === "frame" ? (diagram.models[textAt(record, ["model"]) ?? ""]?.frames ?? null) : null;
       },
     }),
-    [schema, data, diagram, section, path, isSystem, renames, rename, type],
+    [schema, data, diagram, section, path, isSystem, other, renames, rename, type],
   );
   const accept = async (): Promise<void> => {
     const edits = isSystem
@@ -94,7 +96,9 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
           asTyped(each, typed.current),
         )
       : [
-          ...difference(at(data, ["system"]), ground, ["system"]).map((each) => asTyped(each, typed.current)),
+          ...(other === null ? [] : difference(at(data, other), aside, other)).map((each) =>
+            asTyped(each, typed.current),
+          ),
           ...changes(path, before, draft, renames, typed.current),
         ];
     const close = closing();
@@ -134,11 +138,12 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
         )}
         {isSystem ? <SystemForm value={draft} onChange={setDraft} /> : null}
         {section === "bodies" ? <BodyForm value={draft} onChange={setDraft} path={path} entry={entry} /> : null}
-        {isGround ? <GravityForm value={ground} onChange={setGround} /> : null}
+        {isGround ? <GravityForm value={aside} onChange={setAside} /> : null}
         {diagram === null ? null : <DiagramForm value={draft} onChange={setDraft} path={path} />}
         {isSystem || section === "bodies" || diagram !== null ? null : (
           <EntryForm section={section} value={draft} onChange={setDraft} path={path} />
         )}
+        {other?.[0] === "switches" ? <SwitchForm value={aside} onChange={setAside} path={other} /> : null}
         <Help path={path} value={isMap(draft) ? draft : {}} />
       </Form.Provider>
     </Window>
