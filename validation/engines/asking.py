@@ -12,7 +12,6 @@ from .interface import EnginePlugin, Tree
 from .matrix import SEED, Judged, Truths, asked, judged, suited
 from .models import (
     acting,
-    covering,
     flexible,
     hostile,
     kinds,
@@ -24,6 +23,7 @@ from .models import (
     stated,
     transformed,
 )
+from .models.covering import chains, scenes
 from .models.files.formats import formats
 from .models.files.readers import Reading
 from .workers import Job, Worker, registry
@@ -46,13 +46,13 @@ def lots() -> list[Questions]:
     forms: dict[str, dict[str, Reading]] = {}
     for name, one in formats().items():
         forms.setdefault(one.form, {})[name] = one
-    return [*_scenes(), *own, acting.driven(), acting.passive(), *trees, *forms.values()]
+    return [*_scenes(), chains.trees(), *own, acting.driven(), acting.passive(), *trees, *forms.values()]
 
 
 def _scenes() -> list[Questions]:
     """Scenes of features, as some lots that come first: each asks of many features."""
-    scenes = list(covering.trees().items())
-    return [dict(scenes[first::_PARTS]) for first in range(_PARTS)]
+    every = list(scenes.trees().items())
+    return [dict(every[first::_PARTS]) for first in range(_PARTS)]
 
 
 def questions() -> dict[str, Tree | Reading]:

@@ -174,7 +174,7 @@ class Tree:
             functions that need it are asked of such a tree.
         stated: In which way of its own the engine states it, where that is not link by link: "a base",
             "Denavit-Hartenberg parameters" (`models.stated`).
-        features: Features of the scene that the tree stands for (`models.covering`).
+        features: Features of the scene that the tree stands for, or of the tree itself (`models.covering`).
     """
 
     name: str

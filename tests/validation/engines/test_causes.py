@@ -15,7 +15,7 @@ from validation.engines.causes.cause import FOLDER, read, stated
 from validation.engines.causes.corrections import by_columns
 from validation.engines.causes.grouping import causes_of, stale, without_their_causes
 from validation.engines.matrix import SEED, Truths, judged
-from validation.engines.models import covering
+from validation.engines.models.covering import scenes
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
 from validation.engines.report import compose
@@ -144,7 +144,7 @@ def test_scenes_have_the_causes_of_their_features(features: tuple[str, ...], fun
 def test_patterns_of_scenes_are_those_of_some_scene() -> None:
     """In the order in which their names have features."""
     patterns = {one for cause in stated() for one in cause.trees if one.startswith("scene")}
-    assert {one for one in patterns if not any(re.fullmatch(one, name) for name in covering.trees())} == set()
+    assert {one for one in patterns if not any(re.fullmatch(one, name) for name in scenes.trees())} == set()
 
 
 def test_files_of_two_formats_have_no_reader_in_common() -> None:

@@ -219,7 +219,7 @@ def write(tree: Tree) -> Source | Unsupported:
         return covered.write(tree, "mujoco-mjx", DOUBLE, _STEPPED)
     if tree.asked in DEVICES:
         return elsewhere.write(tree.asked, _DEVICES, tuple(_ANSWER.split("\n")))
-    source = mujoco.write(tree)
+    source = covered.by_scenes() if tree.features else mujoco.write(tree)
     if isinstance(source, Unsupported):
         return source
     setup = _SETUP.replace("STEP", repr(STEP)).replace("LINKS", repr([link.name for link in tree.links]))

@@ -9,9 +9,9 @@ from ..models.covering import COVERING
 from ..tree import SOFT_LIMITS
 from ..truth.devices import DEVICES
 from . import mujoco
-from .mujoco import covered, elsewhere, rebuilt
-from .mujoco.elements import KINDS, SOFT, SOFT_FORCES
-from .mujoco.forces import COPY, EXPLICIT, SPARSE
+from .mujoco import covered, elsewhere
+from .mujoco.elements import KINDS
+from .mujoco.forces import COPY
 from .newton import QUIET
 from .writing.source import Source, SourcePlugin, Way
 
@@ -32,9 +32,6 @@ _SETUP = (
     if model.na: put(data, act=states)
     return data
 def made(model, **sizes): return mjw.put_model(model), fresh(model, **sizes)
-def sense(kind, b=None):
-    one = m.sensor(f'{kind}:{m.body(b).name}' if b else kind)
-    return got(dw, 'sensordata')[one.adr[0]:one.adr[0] + one.dim[0]]
 mw, dw = made(m, njmax=0, nconmax=0)"""
 )
 _ANSWER = (
@@ -65,14 +62,8 @@ _UNKNOWN = {name for name in DEVICES["drives"] if name.startswith("drive_pid")} 
     name for name in DEVICES["transmissions"] if name.startswith("ball_oriented")
 }
 _DEVICES = elsewhere.ways(_UNKNOWN)
-_SENSED = (
-    "sensed = range({count})",
-    "def data(kind, k):\n    one = m.sensor(f'{{kind}}{{k}}')\n"
-    "    return got(dw, 'sensordata')[one.adr[0]:one.adr[0] + one.dim[0]]",
-)
 _Q = "put(dw, qpos=q)\nmjw.fwd_position(mw, dw)\n"
 _QV = "put(dw, qpos=q, qvel=v)\nmjw.fwd_position(mw, dw)\nmjw.fwd_velocity(mw, dw)\n"
-_FORWARD = "put(dw, qpos=q, qvel=v, qfrc_applied=tau)\nmjw.forward(mw, dw)\n"
 _INVERSE = "put(dw, qpos=q, qvel=v, qacc=a)\nmjw.inverse(mw, dw)\n"
 # About the mass centre of the whole mechanism that the body is in.
 _HELD = """mjw.rne_postconstraint(mw, dw)
@@ -86,12 +77,6 @@ _FULL = """value, M = np.zeros((m.nv, m.nv)), got(dw, 'M')
 for i in range(m.nv):
     row = slice(m.M_rowadr[i], m.M_rowadr[i] + m.M_rownnz[i])
     value[i, m.M_colind[row]] = value[m.M_colind[row], i] = M[row]"""
-_COLUMNS = """value = np.zeros((m.nv, m.nv))
-x, y = wp.zeros((1, m.nv), dtype=float), wp.zeros((1, m.nv), dtype=float)
-for row, unit in zip(value, np.eye(m.nv, dtype=np.float32)):
-    y.assign(unit[None])
-    mjw.{call}(mw, dw, x, y)
-    row[:] = x.numpy()[0]"""
 _JACOBIANS = """value = np.zeros((len(bs), 6, m.nv))
 Jp, Jr = wp.zeros((1, 3, m.nv), dtype=float), wp.zeros((1, 3, m.nv), dtype=float)
 for k, b in enumerate(bs):
@@ -116,149 +101,49 @@ def _kept(stated: str, sizes: str = "") -> str:
     return f"if 'nw' not in globals():\n    {made}\n"
 
 
-_ACTED = _kept(f"n.opt.timestep = {STEP}\n")
-
-
-def _reading(field: str, before: str = _QV) -> Way:
-    """A field of the data."""
-    return Way(field, f"{before}value = got(dw, '{field}')")
-
-
-def _sensor(kind: str, before: str = _INVERSE) -> Way:
-    return Way(kind, f"{before}value = [data('{kind}', k) for k in sensed]")
-
-
 # Rows of constraints as MuJoCo's own data turn them (`axes`).
 _ROWS = """m.eq_solref[:] = 0.0
-m.opt.tolerance = 0.0
-{jacobian}d.qpos[:] = {at}
+m.opt.tolerance, m.opt.jacobian = 0.0, mj.mjtJacobian.mjJAC_DENSE
+d.qpos[:] = {at}
 mj.mj_kinematics(m, d)
 if 'mc' not in globals(): mc = made(m)[0]
 dc = fresh(m)
 put(dc, qpos={at}, qvel=v, qfrc_applied=tau)
 mjw.forward(mc, dc)
-rows = int(dc.nefc.numpy()[0])
+{again}rows = int(dc.nefc.numpy()[0])
 def row(name): return getattr(dc.efc, name).numpy()[0][:rows]
 """
-_DENSE = "m.opt.jacobian = mj.mjtJacobian.mjJAC_DENSE\n"
-_AGAIN = _ROWS.replace("mjw.forward(mc, dc)\n", "mjw.forward(mc, dc)\nmjw.forward(mc, dc)\n")
-_J_SPARSE = """J = np.zeros((rows, m.nv))
-parts = (row('J_rownnz'), row('J_rowadr'), dc.efc.J_colind.numpy().ravel(), dc.efc.J.numpy().ravel())
-for line, n, first in zip(J, parts[0], parts[1]): line[parts[2][first:first + n]] = parts[3][first:first + n]
-"""
 
 
-def _bound(native: str, code: str, slack: float = 0.0, at: str = "q", jacobian: str = _DENSE, rows: str = _ROWS) -> Way:
+def _bound(native: str, code: str, at: str = "q", again: str = "") -> Way:
     """A field of constraints."""
-    return Way(native, rows.format(at=at, jacobian=jacobian) + code, slack)
+    return Way(native, _ROWS.format(at=at, again=again) + code)
 
 
 _CONSTRAINED = {
     "constraint_jacobian": _bound("efc.J", "value = axes() @ row('J')[:, :m.nv]"),
-    "constraint_jacobian:sparse": _bound(
-        "efc.J, sparse", f"{_J_SPARSE}value = axes() @ J", jacobian=SPARSE.replace("n.opt", "m.opt")
-    ),
     "constraint_velocity_products": _bound("-efc.aref", "value = -axes() @ row('aref')"),
-    "constraint_velocity_products:forward twice": _bound(
-        "-efc.aref after a second forward", "value = -axes() @ row('aref')", rows=_AGAIN
-    ),
-    "constrained_acceleration:forward twice": _bound(
-        "qacc after a second forward", "value = got(dc, 'qacc')", SOFT, rows=_AGAIN
-    ),
     "constraint_residual_products": _bound(
-        "-efc.aref after a second forward", "value = -row('aref') * ways_round()", at="q2", rows=_AGAIN
+        "-efc.aref after a second forward",
+        "value = -row('aref') * ways_round()",
+        at="q2",
+        again="mjw.forward(mc, dc)\n",
     ),
-    "constraint_residuals": _bound("efc.pos", "value = row('pos') * ways_round()", at="q2"),
     "constraint_points": Way("set_const, eq_data", "value = made(m)[0].eq_data.numpy()[0][:, :6]"),
-    "constrained_acceleration": _bound("forward: qacc", "value = got(dc, 'qacc')", SOFT),
-    "constraint_forces": _bound("efc.force", "value = np.linalg.solve(axes().T, row('force'))", SOFT_FORCES),
 }
-
-
-def _of_links() -> dict[str, Way]:
-    """Sensors of links, of MuJoCo's model that has them."""
-    made = {}
-    for name, way in rebuilt.SENSED.items():
-        code = way.code.replace(rebuilt.QVA, _INVERSE).replace(rebuilt.QV, _FORWARD.replace("tau", "0 * v"))
-        code = code.replace("read(", "sense(").replace("d.sensor(", "sense(").replace(").data[0]", ")[0]")
-        code = code.replace("d.sensordata[", "got(dw, 'sensordata')[")
-        code = code.replace("m.body_subtreemass[", "mw.body_subtreemass.numpy()[0, ")
-        code = code.replace("m.opt.gravity", "mw.opt.gravity.numpy()[0]")
-        made[name] = way._replace(code=code)
-    return made
-
-
 WAYS = {
     "mass_matrix": Way("crb", f"{_Q}{_FULL}"),
-    "mass_matrix:mul_m": Way("mul_m", f"{_Q}{_COLUMNS.format(call='mul_m')}"),
-    "mass_matrix_inverse": Way("solve_m", f"{_Q}{_COLUMNS.format(call='solve_m')}"),
-    "bias": _reading("qfrc_bias"),
-    "gravity": _reading("qfrc_bias", _QV.replace("qvel=v", "qvel=0 * v")),
     "inverse_dynamics": Way("inverse", f"{_INVERSE}value = got(dw, 'qfrc_inverse')"),
-    "forward_dynamics": Way("forward", f"{_FORWARD}value = got(dw, 'qacc')"),
-    "kinetic_energy": Way("energy_vel", f"{_QV}mjw.energy_vel(mw, dw)\nvalue = got(dw, 'energy')[1]"),
-    "potential_energy": Way("energy_pos", f"{_Q}mjw.energy_pos(mw, dw)\nvalue = got(dw, 'energy')[0]"),
-    "link_poses": Way(
-        "xpos, xmat", f"{_Q}value = np.hstack([got(dw, 'xpos')[bs], got(dw, 'xmat')[bs].reshape(-1, 9)])"
-    ),
-    "mass_centre": Way("subtree_com", f"{_Q}value = got(dw, 'subtree_com')[0]"),
     "link_jacobians": Way("jac", f"{_Q}{_JACOBIANS}"),
-    "centroidal_momentum": Way(
-        "subtree_vel",
-        f"{_QV}mjw.subtree_vel(mw, dw)\n"
-        "value = np.r_[mw.body_subtreemass.numpy()[0, 0] * got(dw, 'subtree_linvel')[0], got(dw, 'subtree_angmom')[0]]",
-    ),
-    "subtree_momenta": Way(
-        "subtree_vel",
-        f"{_QV}mjw.subtree_vel(mw, dw)\nlinear, angular = got(dw, 'subtree_linvel'), got(dw, 'subtree_angmom')\n"
-        "value = [[*(mw.body_subtreemass.numpy()[0, b] * linear[b]), *angular[b]] for b in bs]",
-    ),
     "joint_wrenches": Way("rne_postconstraint: cfrc_int", f"{_INVERSE}{_HELD}"),
-    "joint_wrenches_driven": Way("forward, rne_postconstraint: cfrc_int", f"{_FORWARD}{_HELD}"),
-    "step_dampers_implicit": _step("mjINT_EULER"),
     "step_dampers_implicit:njmax_0": _step("mjINT_EULER", sizes=", njmax=0"),
-    "step_semi_implicit": _step("mjINT_EULER", EXPLICIT),
-    "step_velocities_implicit": _step("mjINT_IMPLICIT"),
-    "step_forces_implicit": _step("mjINT_IMPLICITFAST"),
-    "step_velocities_implicit:sparse": _step("mjINT_IMPLICIT", SPARSE),
-    "step_forces_implicit:sparse": _step("mjINT_IMPLICITFAST", SPARSE),
     "step_stiffness_implicit_lone": _step("mjINT_DISCRETE", "n.opt.tolerance = 0.0\n"),
-    "step_rk4_manifold": _step("mjINT_RK4"),
-    "accelerometers": _sensor("accelerometer"),
-    "gyroscopes": _sensor("gyro"),
-    "velocimeters": _sensor("velocimeter"),
-    "angular_accelerations": _sensor("frameangacc"),
-    "accelerometers_driven": _sensor("accelerometer", _FORWARD),
-    "wrench_sensors": Way(
-        "force, torque", f"{_INVERSE}value = [[*data('force', k), *data('torque', k)] for k in sensed]"
-    ),
-    "frame_poses": Way(
-        "site_xpos, site_xmat",
-        f"{_Q}own = [m.site(f'o{{k}}').id for k in sensed]\n"
-        "value = np.hstack([got(dw, 'site_xpos')[own], got(dw, 'site_xmat')[own].reshape(-1, 9)])",
-    ),
-    "passive_forces": _reading("qfrc_passive"),
-    "tendon_lengths": _reading("ten_length"),
-    "tendon_speeds": _reading("ten_velocity"),
     "inverse_dynamics_acted": Way("inverse", f"{_INVERSE}value = got(dw, 'qfrc_inverse')"),
-    "link_velocities": Way(
-        "cvel",
-        f"{_QV}value = []\nfor b in bs:\n    w, u = got(dw, 'cvel')[b].reshape(2, 3)\n"
-        "    value.append([*(u + np.cross(w, got(dw, 'xpos')[b] - got(dw, 'subtree_com')[m.body_rootid[b]])), *w])",
-    ),
     "forward_dynamics:put_data": Way(
         "put_data, get_data_into",
         "d.qpos[:], d.qvel[:], d.qfrc_applied[:] = q, v, tau\nmj.mj_forward(m, d)\ne = mj.MjData(m)\n"
         "dn = mjw.put_data(m, d)\nmjw.forward(mw, dn)\nmjw.get_data_into(e, m, dn)\nvalue = e.qacc",
     ),
-    "tendon_arms": Way(
-        "ten_J",
-        f"{_QV}value, J = np.zeros((m.ntendon, m.nv)), got(dw, 'ten_J')\n"
-        "for row, n, first in zip(value, m.ten_J_rownnz, m.ten_J_rowadr):\n"
-        "    row[m.ten_J_colind[first:first + n]] = J[first:first + n]",
-    ),
-    "actuator_lengths": _reading("actuator_length"),
-    "actuator_speeds": _reading("actuator_velocity"),
     "actuator_arms": Way(
         "actuator_moment",
         f"{_QV}value = np.zeros((m.nu, m.nv))\n"
@@ -267,15 +152,8 @@ WAYS = {
         "for row, n, first in zip(value, rows, firsts):\n"
         "    row[columns[first:first + n]] = arms[first:first + n]",
     ),
-    "actuator_forces": _reading("actuator_force", f"{_QV}mjw.fwd_actuation(mw, dw)\n"),
-    "activation_rates": _reading("act_dot", f"{_QV}mjw.fwd_actuation(mw, dw)\n"),
-    "activations_after_step": Way(
-        "step",
-        f"{_ACTED}dn = fresh(n)\nput(dn, qpos=q, qvel=v)\nmjw.step(nw, dn)\nvalue = got(dn, 'act')",
-    ),
-    "actuated_forces": _reading("qfrc_actuator", f"{_QV}mjw.fwd_actuation(mw, dw)\n"),
+    "actuator_forces": Way("actuator_force", f"{_QV}mjw.fwd_actuation(mw, dw)\nvalue = got(dw, 'actuator_force')"),
     **_CONSTRAINED,
-    **_of_links(),
 }
 
 
@@ -285,17 +163,14 @@ def write(tree: Tree) -> Source | Unsupported:
         return covered.write(tree, "mujoco-warp", SINGLE, _STEPPED)
     if tree.asked in DEVICES:
         return elsewhere.write(tree.asked, _DEVICES, tuple(_ANSWER.split("\n")))
-    source = mujoco.write(tree)
+    source = covered.by_scenes() if tree.features else mujoco.write(tree)
     if isinstance(source, Unsupported):
         return source
-    optional = dict(source.optional)
-    if tree.sensors:
-        optional["sensed"] = tuple(line.format(count=len(tree.sensors)) for line in _SENSED)
     setup = tuple(_SETUP.replace("njmax=0", f"njmax={'64' if tree.constraints else '0'}").split("\n"))
     if not tree.changed:
-        return replace(source, lines=(*source.lines, *setup), optional=optional)
+        return replace(source, lines=(*source.lines, *setup))
     made = _CHANGE.replace("FIELDS", repr([_place(name) for name in mujoco.CHANGED[tree.changed]]))
-    return replace(source, lines=(*source.lines, *setup, *made.split("\n")), closing=(), optional=optional)
+    return replace(source, lines=(*source.lines, *setup, *made.split("\n")), closing=())
 
 
 def _place(name: str) -> tuple[str, str, int | None]:

@@ -24,7 +24,7 @@ file = NamedTemporaryFile("w", suffix=".{form}")
 print({text!r}, file=file, flush=True)
 robot = {load}"""
 _JOINTS = "joints = [p.getJointInfo(robot, k) for k in range(p.getNumJoints(robot))]"
-_LINKS = "links = [joint[0] for name in {links} for joint in joints if joint[12].decode() == name]"
+_LINKS = "links = {base} + [joint[0] for name in {links} for joint in joints if joint[12].decode() == name]"
 _GRAVITY = "p.setGravity{gravity}"
 _MOVING = "moving = [joint[0] for joint in joints if joint[2] != p.JOINT_FIXED]"
 _LOADS = {
@@ -252,7 +252,7 @@ def write_reading(tree: Tree, form: str, text: str) -> Source | Unsupported:
         optional |= {"links": (f"links = {list(range(-free, len(tree.links) - free))}",)}
     else:
         optional |= {"joints": (_JOINTS,), "moving": (_MOVING,)}
-        optional |= {"links": (_LINKS.format(links=list(described.links)),)}
+        optional |= {"links": (_LINKS.format(base=[-1] * free, links=list(described.links)),)}
     slots = slots_of(tree, described, described.moving, "free xyzw, body speeds")
     # Its reader of SDF takes no joint with the world: one function asked says so. Five decimals, as its editor of URDF
     # writes them, are enough for joints, not for axes of inertia.

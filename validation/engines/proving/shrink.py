@@ -85,7 +85,7 @@ def size(value: Any) -> int:
 
 
 def _simpler(case: Case) -> Iterator[Case]:
-    if case.tree.features:
+    if case.tree.asked and case.tree.features:
         for features in _fewer(case.tree.features):
             yield replace(case, tree=replace(case.tree, features=features))
         yield from _simpler_states(case)

@@ -15,6 +15,7 @@ from ...models.covering import mjcf
 from ..writing.source import Source, Way
 
 _SLOTS = ((Slot("free wxyz, linear before and angular after", (0, 1, 2, 3, 4, 5, 6), (0, 1, 2, 3, 4, 5)),),)
+_STATE = ("scene_qpos", "scene_qvel", "scene_act", "scene_time")
 # Roundings that a field may be off by: of the largest entry, and of what is set, as they move each entry.
 _ROUNDINGS = 256
 # What iterations leave of accelerations under constraints, as part of the largest.
@@ -28,7 +29,7 @@ def set_to(numbers):
     mj.mj_integratePos(m, d.qpos, np.resize(numbers[4:], m.nv), 0.5)
     xfrc = np.resize(numbers[5:], (m.nbody, 6))
     return dict(given, qpos=np.array(d.qpos), xfrc_applied=xfrc * (np.arange(m.nbody) > 0)[:, None])
-def in_c(given):
+def in_c(given, m=m):
     d = mj.MjData(m)
     for name, values in given.items(): getattr(d, name)[:] = values
     mj.mj_step(m, d)
@@ -76,6 +77,11 @@ def _is_of_one_release(package: str) -> bool:
     return own[0] == other[0] and abs(own[1] - other[1]) <= 1
 
 
+def by_scenes() -> Unsupported:
+    """What is said of trees of features, which MuJoCo itself is asked about."""
+    return Unsupported("pairs of features are asked by scenes", offered=False)
+
+
 def write(tree: Tree, package: str, roundoff: float, lines: str) -> Source | Unsupported:
     """Text that answers of a scene.
 
@@ -87,11 +93,19 @@ def write(tree: Tree, package: str, roundoff: float, lines: str) -> Source | Uns
     """
     if not _is_of_one_release(package):
         return Unsupported(f"MuJoCo {version('mujoco')} is beside it, of another release", offered=False)
-    own = _COMPARED.replace("TEXT", repr(mjcf(tree.features))).replace("ROUNDOFF", repr(roundoff))
+    own = _COMPARED.replace("ROUNDOFF", repr(roundoff))
     # MuJoCo leaves it at zero then, which its documentation does not say.
     lacks = ("scene_actuator_velocity",) if "no actuation" in tree.features else ()
+    if "RK4" in tree.features:  # Of which of its stages the other fields are, no documentation says.
+        lacks = tuple(name for name in FIELDS if name not in _STATE)
     return Source(
-        ("import numpy as np", "import mujoco as mj", *lines.split("\n"), *own.split("\n")),
+        (
+            "import numpy as np",
+            "import mujoco as mj",
+            f"TEXT = {mjcf(tree.features)!r}",
+            *lines.split("\n"),
+            *own.split("\n"),
+        ),
         _SLOTS,
         7,
         6,

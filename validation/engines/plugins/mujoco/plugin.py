@@ -72,6 +72,8 @@ def write(tree: Tree) -> Source | Unsupported:
     spelling = beside.spelling(tree) if tree.constraints and not tree.asked else {}
     # What is attached already is not made in other ways.
     lacks = (*rebuilt.SENSED, *rebuilt.ways(_WAYS)) if own else ()
+    if any(one.tendon is not None for one in tree.actuators):  # The sensor is of joints of one speed alone.
+        lacks += ("actuated_forces:jointactuatorfrc",)
     return Source(tuple(lines), slots, nq, nv, optional, lacks, spelling=spelling, of_links="bs")
 
 

@@ -3,10 +3,10 @@
 from __future__ import annotations
 
 from ...interface import SINGLE, Convention, Statement, Tree, Unsupported
+from ...models.covering import COVERING
 from ..writing.source import Source, SourcePlugin
 from ..writing.urdf import has_bare_shape
-from .devices import GROUPS, write_devices
-from .devices import WAYS as OF_DEVICES
+from . import scenes
 from .files import READERS, write_reading
 from .files import WAYS as OF_FILES
 from .lone import WAYS as OF_LONE
@@ -17,8 +17,8 @@ from .ways import WAYS
 
 def _write(tree: Tree) -> Source | Unsupported:
     """Text that builds a tree, or the lone body that is asked for."""
-    if tree.asked in GROUPS:
-        return write_devices()
+    if tree.asked == COVERING:
+        return scenes.write(tree)
     if tree.asked == "held distances":
         return write_held(tree)
     return write_wheel(tree) if tree.asked == "wheels" else write(tree)
@@ -59,7 +59,7 @@ PLUGIN = SourcePlugin(
         "two slides and a hinge": "add_joint_d6",
         "translation and euler zyx": "add_joint_d6",
     },
-    ways=WAYS | OF_FILES | OF_LONE | OF_DEVICES,
+    ways=WAYS | OF_FILES | OF_LONE | scenes.WAYS,
     write=_write,
     demands={
         "dampers": "damping",
@@ -67,7 +67,7 @@ PLUGIN = SourcePlugin(
         "actuators": "joint_f, target_ke, target_kd",
         "wheels": "SolverXPBD, SolverSemiImplicit, SolverFeatherstone",
         "held distances": "add_joint_distance",
-        **dict.fromkeys(GROUPS, "add_mjcf, SolverMuJoCo"),
+        COVERING: "add_mjcf, SolverMuJoCo",
     },
     formats=tuple(READERS),
     write_reading=write_reading,

@@ -9,7 +9,7 @@ import pytest
 
 from validation.engines.causes.cause import stated
 from validation.engines.functions import STEPS
-from validation.engines.interface import ORIGIN, STEP, End, Tree, Unsupported
+from validation.engines.interface import ORIGIN, STEP, Actuator, End, Tree, Unsupported
 from validation.engines.matrix import SEED, Judged, Truths, asked, cells, judged
 from validation.engines.models import acting, sensed
 from validation.engines.models.kinds import tree_of
@@ -97,13 +97,18 @@ def test_a_wrench_without_the_share_of_the_joint_is_a_red_cell(name: str) -> Non
     assert judge("planted", tree, "wrench_sensors_driven", answer, wanted.want).verdict == "wrong"
 
 
+_PULLING = Actuator(tendon=0, gear=2.0, gain=1.5, bias=(0.25, -3.0, -0.5), control=0.75)
+
+
+@pytest.mark.parametrize("actuators", [(), (_PULLING,)])
 @pytest.mark.parametrize(
     "name", ["sensors on hinges that a tendon pulls", "sensors on hinges that a tendon over points pulls"]
 )
-def test_holding_wrenches_balance_a_tendon_between_links(name: str) -> None:
-    tree = SENSED[name]
+def test_holding_wrenches_balance_a_tendon_between_links(name: str, actuators: tuple[Actuator, ...]) -> None:
+    """And what an actuator pulls the tendon with."""
+    tree = replace(SENSED[name], actuators=actuators)
     (wanted,), (bare,) = (
-        _judged("mujoco", one, "wrench_sensors").values() for one in (tree, replace(tree, tendons=()))
+        _judged("mujoco", one, "wrench_sensors").values() for one in (tree, replace(tree, tendons=(), actuators=()))
     )
     assert wanted.cell.verdict == bare.cell.verdict == "right" and wanted.want is not None
     answer = np.asarray(bare.answer.value)

@@ -1,28 +1,23 @@
 """Small scenes of MJCF that cover each pair of features: what is wrong of two of them together shows in one scene.
 
 A scene has options for all of it, and chains of two bodies beside each other; each has features of the table below.
-Greedily, each further scene has as many pairs as it can that no scene before it has: pairs of options, of an option
-and a feature of a chain, and of two features of one chain. The first scenes thus have most of them.
 """
 
 from __future__ import annotations
 
-from collections import Counter
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache
-from itertools import combinations
-from math import inf
 
-from ..interface import ORIGIN, Joint, Link, Tree
+from ...interface import ORIGIN, Joint, Link, Tree
+from .pairs import Table, covering, levels
 
 # What a tree is asked about that stands for the numbers of a scene (`Tree.asked`).
 COVERING = "scenes of features"
 CHAINS = 3
-Table = Mapping[str, Mapping[str, str]]
 _UNCONSTRAINED, _UNBOUND = "unconstrained", "unbound"
 # Factor -> feature -> what stands in the file; the first is that of scenes that state none.
-OPTIONS: Table = {
-    "integrator": {name: f'integrator="{name}"' for name in ("Euler", "implicitfast", "implicit")},
+OPTIONS: Table[str] = {
+    "integrator": {name: f'integrator="{name}"' for name in ("Euler", "implicitfast", "implicit", "RK4")},
     "jacobian": {name: f'jacobian="{name}"' for name in ("dense", "sparse")},
     "cone": {name: f'cone="{name}"' for name in ("pyramidal", "elliptic")},
     "solver": {name: f'solver="{name}"' for name in ("Newton", "CG")},
@@ -55,7 +50,7 @@ _FIXED = '<joint joint="i{k}" coef="0.75"/>'
 _STRAIGHT = '<site site="w{k}"/><site site="r{k}"/><site site="s{k}"/>'
 _PULLED = '<site site="w{k}"/><site site="r{k}"/><pulley divisor="2"/><site site="r{k}"/><site site="s{k}"/>'
 _SPRUNG = 'stiffness="3" springlength="0.25" damping="0.5"'
-CHAIN: Table = {
+CHAIN: Table[str] = {
     "joint": {"no chain": ""}
     | {name: f'type="{name}" axis="0.6 0 0.8" pos="0.1 0.2 0"' for name in ("hinge", "slide")}
     | {"ball": 'type="ball" pos="0.1 0.2 0"', "free": 'type="free"'},
@@ -134,21 +129,21 @@ _PLANE = '<geom type="plane" size="9 9 1" contype="0"/>'
 # excludes fluid drag; transmissions joint, jointinparent, site, tendon; no energy.
 _UNKNOWN = ("implicit", "crank", "energy")
 RARE = ((*_UNKNOWN, "CG", "dense air", "viscous wind", "elliptic"), _UNKNOWN, ())
+# Where there are to be no constraints, none is.
+NEVER = frozenset(frozenset((_UNCONSTRAINED, one)) for one in CHAIN["bound"] if one != _UNBOUND)
 
 
 def mjcf(features: Sequence[str]) -> str:
     """The scene with some features; those of a chain begin with its number."""
-    options = _levels(OPTIONS, features)
+    options = levels(OPTIONS, features)
     text = {factor: OPTIONS[factor][one] for factor, one in options.items()}
     bodies, after = [_PLANE] if any("contact" in one for one in features) else [], []
     for k in range(CHAINS):
-        levels = _levels(CHAIN, [one.partition(": ")[2] for one in features if one.startswith(f"{k}: ")])
-        if options["constraints"] == _UNCONSTRAINED:
-            levels["bound"] = _UNBOUND
-        if levels["joint"] != "no chain":
-            body, more = _chain(k, levels)
+        own = levels(CHAIN, [one.partition(": ")[2] for one in features if one.startswith(f"{k}: ")])
+        if own["joint"] != "no chain":
+            body, more = _chain(k, own)
             bodies.append(body)
-            after += [more, f"<sensor>{_sensors(options, levels).format(k=k)}</sensor>"]
+            after += [more, f"<sensor>{_sensors(options, own).format(k=k)}</sensor>"]
     option = " ".join(text[name] for name in ("integrator", "jacobian", "cone", "solver", "medium"))
     return (
         f'<mujoco><compiler angle="radian"/><option timestep="0.03125" tolerance="0" {option}><flag {text["flag"]}/>'
@@ -156,107 +151,47 @@ def mjcf(features: Sequence[str]) -> str:
     )
 
 
-def _levels(table: Table, features: Sequence[str]) -> dict[str, str]:
-    """The feature of each factor: the first, where none is stated."""
-    return {
-        factor: next((one for one in named if one in features), next(iter(named))) for factor, named in table.items()
-    }
-
-
-def _chain(k: int, levels: Mapping[str, str]) -> tuple[str, str]:
+def _chain(k: int, own: Mapping[str, str]) -> tuple[str, str]:
     """A chain's bodies, and the elements after the world."""
-    text = {factor: CHAIN[factor][one] for factor, one in levels.items()}
+    text = {factor: CHAIN[factor][one] for factor, one in own.items()}
     both, _, joint = text["passive"].partition("JOINT ")
     both, _, compensation = both.partition("BODY ")
     bound, line, at = text["bound"], text["line"], text["transmission"]
     second = " ".join((both, joint, bound.removeprefix("ATTRIBUTES ") if bound.startswith("ATTRIBUTES") else ""))
     geoms = bound if bound.startswith("<geom") else ""
     after = bound if bound.startswith(("<equality", "<tendon")) else ""
-    if levels["transmission"] == "tendon" and text["drive"] and not line:
+    if own["transmission"] == "tendon" and text["drive"] and not line:
         line = _TENDON.format(kind="fixed", springs="", path=_FIXED)
     # A servo's length along a free joint is none.
-    driven = "i" if levels["joint"] == "free" else "j"
+    driven = "i" if own["joint"] == "free" else "j"
     drive = text["drive"].format(at=f'name="m{k}" {at.format(joint=driven, k=k)} {_GEAR}')
     first = f"{text['joint']} {both}"
     body = _BODIES.format(k=k, x=4 * k, compensation=compensation, first=first, second=second, geoms=geoms)
-    if levels["bound"] == "mocap weld":
+    if own["bound"] == "mocap weld":
         body += _MOCAP.format(k=k)
     # So soft that velocity products show beside what springs pull with.
     return body, f"{(after + line).format(k=k, soft=_SOFT)}<actuator>{drive}</actuator>"
 
 
-def _sensors(options: Mapping[str, str], levels: Mapping[str, str]) -> str:
+def _sensors(options: Mapping[str, str], own: Mapping[str, str]) -> str:
     """Sensors of a chain, with those of the tendon, the drive and the ball that it has."""
     text = OPTIONS["sensors"][options["sensors"]]
     kind = {"<f": "pos", "<v": "vel", "<a": "frc"}.get(text[:2], "")
     # Without actuation MuJoCo leaves the speeds of actuators at zero, which its documentation does not say.
-    is_stated = levels["drive"] != "not driven" and (kind != "vel" or options["flag"] != "no actuation")
+    is_stated = own["drive"] != "not driven" and (kind != "vel" or options["flag"] != "no actuation")
     more = [f'<actuator{kind} actuator="m{{k}}"/>'] if kind and is_stated else []
     if kind in ("pos", "vel"):
-        more += [f'<tendon{kind} tendon="t{{k}}"/>'] if levels["line"] != "no tendon" else []
+        more += [f'<tendon{kind} tendon="t{{k}}"/>'] if own["line"] != "no tendon" else []
         ball = {"pos": "ballquat", "vel": "ballangvel"}[kind]
-        more += [f'<{ball} joint="j{{k}}"/>'] if levels["joint"] == "ball" else []
+        more += [f'<{ball} joint="j{{k}}"/>'] if own["joint"] == "ball" else []
     return text + "".join(more)
-
-
-Pair = frozenset[str]
-
-
-def _filled(table: Table, known: Sequence[str], missing: set[Pair], weight: Counter[str], seed: Pair) -> list[str]:
-    """One feature of each factor, each so that it has most of the missing pairs with those that are known already."""
-    chosen: list[str] = []
-
-    def worth(one: str) -> float:
-        pairs = sum(frozenset((one, other)) in missing for other in (*known, *chosen))
-        return inf if one in seed else pairs + weight[one] / 1000.0
-
-    # What is missing most goes first.
-    for named in sorted(table.values(), key=lambda named: -max(inf if one in seed else weight[one] for one in named)):
-        chosen.append(max(named, key=worth))
-    return chosen
 
 
 @cache
 def scenes() -> tuple[tuple[str, ...], ...]:
     """Features of one scene after the other, until there is each pair; first features of factors are left out."""
-    there: set[Pair] = set()
-    made: list[tuple[str, ...]] = []
-    for rare in RARE:
-        options, chain = (
-            {factor: _without(named, (*rare, "no chain")) for factor, named in one.items()} for one in (OPTIONS, CHAIN)
-        )
-        made += _covering(options, chain, there)
-    return tuple(made)
-
-
-def _without(named: Mapping[str, str], rare: Sequence[str]) -> dict[str, str]:
-    return {one: text for one, text in named.items() if one not in rare}
-
-
-def _covering(options: Table, chain: Table, there: set[Pair]) -> Iterator[tuple[str, ...]]:
-    """Scenes until there is each pair of features of two tables, of which some are there already."""
-    factors = [list(named) for named in (*options.values(), *chain.values())]
-    missing = {frozenset((one, other)) for a, b in combinations(factors, 2) for one in a for other in b} - there
-    # Where there are to be no constraints, none is.
-    bound = [one for one in chain["bound"] if one != _UNBOUND]
-    missing -= {frozenset((_UNCONSTRAINED, one)) for one in bound}
-    plain = {next(iter(named)) for name, named in (*options.items(), *chain.items()) if name != "joint"}
-    while missing:
-        weight = Counter(one for pair in missing for one in pair)
-        seed = max(missing, key=lambda pair: (sum(weight[one] for one in pair), sorted(pair)))
-        own_options = options
-        if seed & set(bound):
-            own_options = {**options, "constraints": {"constrained": ""}}
-        shared = _filled(own_options, (), missing, weight, seed)
-        features, pairs = [one for one in shared if one not in plain], set(map(frozenset, combinations(shared, 2)))
-        own_chain = {**chain, "bound": {_UNBOUND: ""}} if _UNCONSTRAINED in shared else chain
-        for k in range(CHAINS):
-            own = _filled(own_chain, shared, missing - pairs, weight, seed if not k else frozenset())
-            pairs |= set(map(frozenset, combinations((*shared, *own), 2)))
-            features += [f"{k}: {one}" for one in own if one not in plain]
-        missing -= pairs
-        there |= pairs
-        yield tuple(features)
+    chain = {**CHAIN, "joint": {one: text for one, text in CHAIN["joint"].items() if one != "no chain"}}
+    return tuple(covering(OPTIONS, chain, CHAINS, RARE, NEVER))
 
 
 def trees() -> dict[str, Tree]:
