@@ -6,32 +6,26 @@ from dataclasses import replace
 
 import numpy as np
 
-from ..interface import Actuator, End, Joint, Link, Tendon, Tree
+from ..interface import Actuator, End, Joint, Tendon, Tree
 from .kinds import OBLIQUE, link, placed, shifted, turned
 
 _HINGE = Joint("revolute", axis=OBLIQUE)
 
 
-def _sensed(name: str, *joints: Joint, base: bool = False, sideways: bool = False) -> Tree:
-    """A chain, or branches on the first link, each link with a sensor."""
+def _sensed(name: str, *joints: Joint) -> Tree:
+    """A chain, each link with a sensor."""
     draw = np.random.default_rng([ord(letter) for letter in name])
-    links: list[Link] = [link(draw, "base", -1, Joint("free"))] if base else []
-    for k, joint in enumerate(joints):
-        parent = min(len(links), 1) - 1 if sideways else len(links) - 1
-        links.append(link(draw, "abcdef"[k], parent, placed(draw, joint)))
+    links = [link(draw, "abcdef"[k], k - 1, placed(draw, joint)) for k, joint in enumerate(joints)]
     sensors = tuple(End(one.name, turned(draw), shifted(draw, 0.3)) for one in links)
-    return Tree(name, tuple(links), shifted(draw, 20.0) if "aside" in name else (0.0, 0.0, -9.81), sensors=sensors)
+    return Tree(name, tuple(links), sensors=sensors)
 
 
 def _of_forces() -> list[Tree]:
-    """Joints that act on both of their links, which no sensor tells from what holds the link: losses, springs, motors.
+    """Joints that act on both of their links, which no sensor tells from what holds the link: losses, motors.
 
-    What armature adds to the mass matrix is in no link: sensors read what the links' own masses take.
     A tendon between links is none of what holds them.
     """
-    damped, geared = replace(_HINGE, damping=0.75), replace(_HINGE, armature=(0.75,))
-    sprung = replace(_HINGE, damping=0.5, stiffness=3.0, rest=0.25)
-    slide = Joint("prismatic", axis=OBLIQUE, damping=1.5, stiffness=8.0, rest=0.125)
+    damped = replace(_HINGE, damping=0.75)
     driven = _sensed("sensors on driven joints", _HINGE, Joint("prismatic", axis=OBLIQUE), _HINGE)
     motors = (
         Actuator("a", gear=3.0, control=0.75),
@@ -45,9 +39,6 @@ def _of_forces() -> list[Tree]:
         replace(_sensed(pulled, _HINGE, _HINGE, _HINGE), tendons=(straight,)),
         replace(_sensed(bent, _HINGE, _HINGE, _HINGE), tendons=(over,)),
         _sensed("sensors on damped hinges", damped, damped, damped),
-        _sensed("sensors on springs and dampers", sprung, slide, sprung),
-        _sensed("sensors beyond a damped ball", _HINGE, Joint("ball", damping=0.5), damped),
-        _sensed("sensors on hinges with armature", geared, geared, geared),
         replace(driven, actuators=motors),
     ]
 
@@ -57,10 +48,7 @@ def trees() -> dict[str, Tree]:
     made = (
         *_of_forces(),
         _sensed("sensors on hinges", _HINGE, _HINGE, _HINGE),
-        _sensed("sensors on branches, gravity aside", _HINGE, _HINGE, _HINGE, sideways=True),
-        _sensed("sensors on a slide and hinges", Joint("prismatic", axis=OBLIQUE), _HINGE, _HINGE),
         _sensed("sensors beyond a ball", _HINGE, Joint("ball"), _HINGE),
-        _sensed("sensors on a free base and branches", _HINGE, _HINGE, base=True, sideways=True),
         _sensed("sensors on fixed links", _HINGE, Joint("fixed"), _HINGE),
     )
     return {tree.name: tree for tree in made}
