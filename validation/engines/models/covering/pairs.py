@@ -44,11 +44,11 @@ def covering(
     """
     there: set[Pair] = set()
     for absent in rare:
-        factors = [
+        whole, own = (
             {factor: [one for one in named if one not in absent] for factor, named in table.items()}
             for table in (options, chain)
-        ]
-        yield from _round(*factors, chains, never, there)
+        )
+        yield from _round(whole, own, chains, never, there)
 
 
 def _round(
