@@ -28,11 +28,10 @@ from symofros.base.options import Options
 from symofros.description.system import System
 from symofros.errors import CompileError, CompilerMissingWarning, DescriptionError, InconsistentModelWarning, Problem
 from symofros.expr.program import Program
-from symofros.generator.beams import beams_at
+from symofros.generator.beams import beams_at, held_beams, may_be_held
 from symofros.generator.codegen.cuda import device_code
 from symofros.generator.codegen.model import model_source
 from symofros.generator.codegen.tape import machine_text
-from symofros.generator.held_beams import held_beams, may_be_held
 from symofros.generator.instants import MechanismInstants, has_instants
 from symofros.generator.passes.count import Operations, count_program
 from symofros.generator.programs import ProgramBuilder, requested

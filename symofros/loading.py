@@ -10,8 +10,8 @@ from pathlib import Path
 from typing import Any
 
 from symofros.base.arguments import checked
-from symofros.base.atomic import write_atomically
 from symofros.base.sources import Source as Source
+from symofros.base.stored import write_atomically
 from symofros.description.imported.options import SNAP_TOL, ImportOptions
 from symofros.description.imported.options import Dissipation as Dissipation
 from symofros.description.imported.options import LimitsAs as LimitsAs

@@ -31,12 +31,12 @@ from functools import cached_property
 
 import numpy as np
 
-from symofros.base.atomic import write_atomically as write_atomically
 from symofros.base.options import Options
 from symofros.base.stored import append_line as append_line
 from symofros.base.stored import keep as keep
 from symofros.base.stored import stored_json as stored_json
 from symofros.base.stored import stored_lines as stored_lines
+from symofros.base.stored import write_atomically as write_atomically
 from symofros.compiler import Compilation
 from symofros.description.entry_units import units_of as units_of
 from symofros.description.system import System

@@ -52,10 +52,9 @@ ALLOWED = table("""
     # The stages of the pipeline between mechanics and the model, which the compiler puts together.
     generator.record: base expr description mechanics.beams mechanics.topology mechanics.kinematics
         mechanics.dynamics runtime
-    # The beams as numbers, which judge how far results bend them.
+    # The beams as numbers, which judge how far results bend them; what the constraints' Jacobian says of those that
+    # can't stretch.
     generator.beams: expr description mechanics.beams mechanics.topology runtime
-    # What the constraints' Jacobian says of beams that can't stretch.
-    generator.held_beams: description mechanics.topology runtime
     # When formulas of time bend or jump, which steps end at.
     generator.instants: base expr description mechanics.topology mechanics.kinematics mechanics.dynamics
         generator.codegen runtime
@@ -64,7 +63,7 @@ ALLOWED = table("""
     generator.units: base errors native expr mechanics.topology mechanics.dynamics generator.passes runtime
         generator.codegen generator.record generator.programs
     compiler: base errors expr description mechanics.topology mechanics.dynamics runtime generator.passes
-        generator.codegen generator.record generator.beams generator.held_beams generator.instants
+        generator.codegen generator.record generator.beams generator.instants
         generator.programs generator.units
     loading: base errors description mechanics.topology
     # What follows are the wings, which take of these folders what the waist offers; see `WAIST`.

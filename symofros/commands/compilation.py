@@ -7,10 +7,10 @@ from contextlib import suppress
 from pathlib import Path
 from typing import Any
 
-from symofros.base.atomic import write_atomically
 from symofros.base.functions import DEFAULT_FUNCTIONS
 from symofros.base.names import identifier
 from symofros.base.options import Options
+from symofros.base.stored import write_atomically
 from symofros.commands.reading import ReadingOptions
 from symofros.commands.shared import refuse, refusing_descriptions
 from symofros.compiler import Compilation, inconsistencies

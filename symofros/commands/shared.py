@@ -14,7 +14,7 @@ from typing import TYPE_CHECKING, Annotated
 import typer
 
 import symofros as sf
-from symofros.base.atomic import NO_ROOM
+from symofros.base.stored import NO_ROOM
 from symofros.commands.reading import ReadingOptions, pairs
 
 if TYPE_CHECKING:

@@ -6,7 +6,7 @@ import sys
 from dataclasses import dataclass
 from pathlib import Path
 
-from symofros.base.atomic import check_writable
+from symofros.base.stored import check_writable
 from symofros.blocks.graphics.view import View3D, with_view
 from symofros.description import System
 from symofros.diagrams.diagram import Diagram

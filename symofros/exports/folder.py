@@ -8,8 +8,8 @@ from collections.abc import Mapping
 from dataclasses import dataclass
 from pathlib import Path
 
-from symofros.base.atomic import write_atomically
 from symofros.base.names import identifier, package_name
+from symofros.base.stored import write_atomically
 from symofros.errors import ExportError, Problem
 
 MANIFEST = "symofros-export.json"

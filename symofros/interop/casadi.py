@@ -23,10 +23,10 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arguments import check_argument
-from symofros.base.atomic import write_atomically
 from symofros.base.functions import FUNCTIONS
 from symofros.base.names import identifier
 from symofros.base.options import Options
+from symofros.base.stored import write_atomically
 from symofros.compiler import Compilation
 from symofros.description import System
 from symofros.errors import CompileError, Problem, UnknownNameError, did_you_mean

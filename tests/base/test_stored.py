@@ -12,8 +12,7 @@ import pytest
 from hypothesis import given
 from hypothesis import strategies as st
 
-from symofros.base.atomic import write_atomically
-from symofros.base.stored import append_line, keep, stored_json, stored_lines, stored_text
+from symofros.base.stored import append_line, keep, stored_json, stored_lines, stored_text, write_atomically
 from symofros.errors import StoredStateWarning
 
 DAMAGES = [b"", b"\0" * 64, b"\xff\xfe\x80", b"{", b"null", b"3", b"[]", b"{}", b'{"n": "x"}', b"[" * 100_000]

@@ -147,7 +147,7 @@ def test_pictures_are_whole_or_absent(tmp_path: Path, monkeypatch: pytest.Monkey
     def full(*_: object) -> None:
         raise OSError(errno.ENOSPC, "No space left on device")
 
-    monkeypatch.setattr("symofros.base.atomic.os.replace", full)
+    monkeypatch.setattr("symofros.base.stored.os.replace", full)
     found = run(ARM, "0.01", "--plot", picture)
     assert found.exit_code == 2 and "r.svg" in found.output and "make room" in found.output
     assert picture.read_text() == "old" and [*tmp_path.iterdir()] == [picture]

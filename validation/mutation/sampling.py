@@ -26,7 +26,7 @@ SCOPE = (
     "symofros/description/urdf/values.py",
     "symofros/description/mjcf/joints.py",
     "symofros/description/imported/geometry.py",
-    "symofros/description/mjcf/numbers.py",
+    "symofros/description/mjcf/model.py",
     "symofros/expr/**/*.py",
     "symofros/mechanics/**/*.py",
     "symofros/generator/*.py",

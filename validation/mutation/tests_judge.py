@@ -130,7 +130,7 @@ _MIRRORS = {
         "tests/mechanics/beams/test_rod.py",
         "tests/mechanics/beams/test_rod_outputs.py",
     ),
-    "symofros/mechanics/dynamics/reactions.py": (
+    "symofros/mechanics/dynamics/formulas.py": (
         "tests/mechanics/dynamics",
         "tests/simulation/events/test_conditions_by_forces.py",
     ),

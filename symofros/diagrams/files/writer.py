@@ -11,7 +11,7 @@ from typing import Any
 from ruamel.yaml.comments import CommentedMap, CommentedSeq
 
 from symofros.base.arguments import checked
-from symofros.base.atomic import write_atomically
+from symofros.base.stored import write_atomically
 from symofros.description import resolved
 from symofros.description.yaml import key_text, value_text, yaml_text
 from symofros.diagrams.block import Block, ModelSetup

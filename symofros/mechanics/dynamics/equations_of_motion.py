@@ -25,8 +25,12 @@ from symofros.mechanics.dynamics.constraints.wrenches import closure_wrenches, w
 from symofros.mechanics.dynamics.forward.articulated import articulated_acceleration, articulated_solution, is_local
 from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import MassMatrix, Matrix, mass_matrix
-from symofros.mechanics.dynamics.wrenches.reactions import in_body_frames, prescribed_efforts, transmitted_wrenches
-from symofros.mechanics.dynamics.wrenches.section_forces import section_forces
+from symofros.mechanics.dynamics.wrenches.reactions import (
+    in_body_frames,
+    prescribed_efforts,
+    section_forces,
+    transmitted_wrenches,
+)
 from symofros.mechanics.kinematics.frames import FrameKinematics
 from symofros.mechanics.kinematics.links import TreeKinematics, tree_kinematics
 from symofros.mechanics.spatial.inertia import LinkInertia

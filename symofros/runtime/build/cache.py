@@ -16,7 +16,7 @@ from contextlib import suppress
 from functools import cache
 from pathlib import Path
 
-from symofros.base.atomic import NO_ROOM, write_atomically
+from symofros.base.stored import NO_ROOM, write_atomically
 from symofros.errors import CompileError, Problem
 from symofros.runtime.build.cache_size import keep_within_limit, note_use
 

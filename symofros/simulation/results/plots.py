@@ -10,7 +10,7 @@ from pathlib import Path
 from typing import Any
 
 from symofros.base.arrays import Array
-from symofros.base.atomic import check_writable, write_atomically
+from symofros.base.stored import check_writable, write_atomically
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.model import Model
 

@@ -15,7 +15,7 @@ from typing import Any, TypeVar
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.base.atomic import check_writable, write_atomically
+from symofros.base.stored import check_writable, write_atomically
 from symofros.errors import Problem, SymofrosError
 
 T = TypeVar("T")

@@ -8,8 +8,8 @@ from dataclasses import dataclass
 from pathlib import Path
 from typing import Any, Literal
 
-from symofros.base.atomic import write_atomically
 from symofros.base.options import Options
+from symofros.base.stored import write_atomically
 from symofros.description import YAML_SUFFIXES, System
 from symofros.description.yaml import write_yaml
 from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean

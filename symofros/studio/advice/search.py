@@ -1,4 +1,4 @@
-"""sf.advise: the cheapest model that meets a scene's tolerance, each step of the way verified by simulation."""
+"""sf.advise: the cheapest model that meets a scene's tolerance, each step verified against a richer model."""
 
 from __future__ import annotations
 
@@ -7,17 +7,29 @@ from dataclasses import replace
 
 from symofros.base.arguments import checked
 from symofros.base.options import Options
-from symofros.description import Beam, System
+from symofros.description import DIRECTIONS, Beam, System
 from symofros.errors import BeamTheoryError, DescriptionError, Problem, SymofrosError, did_you_mean
 from symofros.runtime.beams import bending_notes
 from symofros.studio.advice.advice import Advice, Choice, Verdict
 from symofros.studio.advice.candidates import Reduction, candidates, constants, fewer_functions, lower_orders
 from symofros.studio.advice.loads import BeamLoads, Observed
-from symofros.studio.advice.refined_model import refined
 from symofros.studio.advice.scene import Scene
 from symofros.studio.advice.scene_runner import ReferenceSolution, SceneRunner, Trial
 from symofros.studio.advice.stepping import cheapest
 from symofros.studio.advice.theories import as_rods, missed_by_theory, simpler_theories
+
+
+def refined(system: System) -> System:
+    """One function more in every direction that bends or twists, and rotary inertia wherever it is stated."""
+    return system.with_bodies(*(_refined(body) for body in system.beams if body.modes))
+
+
+def _refined(beam: Beam) -> Beam:
+    more = {"hermite": 2, "user": 0}.get(beam.family, 1)
+    counts = {d: getattr(beam, d) + more for d in DIRECTIONS if getattr(beam, d)}
+    stated = beam.rhoI_y != 0.0 or beam.rhoI_z != 0.0
+    return replace(beam, rotary_inertia=beam.rotary_inertia or stated, **counts)
+
 
 # Shares of the tolerance: what is left out may err by the first, stepping by the second.
 MODEL, STEPPING = 0.8, 0.2

@@ -16,7 +16,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arguments import checked
-from symofros.base.atomic import write_atomically
+from symofros.base.stored import write_atomically
 from symofros.description import System
 from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, SymofrosError, did_you_mean

@@ -15,7 +15,7 @@ from symofros.runtime.model import ArrayLike
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.drawing.poses import Mechanism, State
 from symofros.studio.viewer.drawing.tracks import tracks_of
-from symofros.studio.viewer.page.camera_watch import CameraWatch
+from symofros.studio.viewer.page.cameras import CameraWatch
 from symofros.studio.viewer.page.scene_state import Acting
 from symofros.studio.viewer.page.viewer_page import ViewerPage
 from symofros.studio.viewer.page.viser_server import LOOPBACK, PORT, start_server, stop_server

@@ -8,7 +8,7 @@ import pytest
 import symofros as sf
 from symofros.description.beams.shapes import FAMILIES
 from symofros.mechanics.beams.second_order.deformation import small_coordinates
-from symofros.mechanics.beams.second_order.shape import FieldShape
+from symofros.mechanics.beams.second_order.theory import FieldShape
 from symofros.studio.viewer.drawing.drawing import STATIONS
 
 LENGTH = 1.5

@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.mechanics.beams.strain.resolution import sections_of_turn
+from symofros.mechanics.beams.strain.theory import sections_of_turn
 from symofros.mechanics.topology.tree import build_tree
 from symofros.runtime.calls.kernel import Array
 from tests.mechanics.beams.rods import rod

@@ -9,7 +9,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.mechanics.beams.strain.shape import StrainShape
+from symofros.mechanics.beams.strain.theory import StrainShape
 from tests.mechanics.beams.rods import CASES, HUB, integrated, rod, rod_system
 
 FUNCTIONS = ("mass_matrix", "bias", "generalized_force", "kinetic_energy", "potential_energy", "coriolis_matrix")

@@ -9,7 +9,7 @@ import pytest
 from scipy.integrate import solve_ivp
 
 import symofros as sf
-from symofros.mechanics.beams.strain.shape import StrainShape
+from symofros.mechanics.beams.strain.theory import StrainShape
 from tests.mechanics.beams.rods import HUB, STIFF, rod
 
 

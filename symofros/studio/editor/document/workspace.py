@@ -8,7 +8,7 @@ import os
 from pathlib import Path
 from typing import Any
 
-from symofros.base.atomic import write_atomically
+from symofros.base.stored import write_atomically
 from symofros.description import MODEL_SUFFIXES, YAML_SUFFIXES, kind_of
 from symofros.description.yaml import MAX_BYTES
 from symofros.diagrams.files.kind import is_diagram

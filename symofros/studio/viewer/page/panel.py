@@ -12,9 +12,8 @@ from symofros.base.arrays import Array
 from symofros.studio.viewer.drawing.arrows import ARROWS
 from symofros.studio.viewer.drawing.drawing import Drawing
 from symofros.studio.viewer.drawing.layers import LAYERS
-from symofros.studio.viewer.page.force_plot import ForcePlot
 from symofros.studio.viewer.page.ghost_scene import legend_of
-from symofros.studio.viewer.page.signal_plot import SignalPlot
+from symofros.studio.viewer.page.plots import ForcePlot, SignalPlot
 from symofros.studio.viewer.playing.ghosts import Ghost
 from symofros.studio.viewer.playing.player import Player
 from symofros.studio.viewer.playing.signals import Signal

@@ -14,7 +14,7 @@ from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_me
 from symofros.runtime.beams import BeamBending, bending_notes
 from symofros.studio.viewer.drawing.arrows import ARROWS
 from symofros.studio.viewer.drawing.poses import Mechanism, State
-from symofros.studio.viewer.page.camera_follow import CameraFollow
+from symofros.studio.viewer.page.cameras import CameraFollow
 from symofros.studio.viewer.page.frame_handle import FrameHandle
 from symofros.studio.viewer.page.ghost_scene import GhostScene
 from symofros.studio.viewer.page.panel import Panel

@@ -6,6 +6,8 @@ import re
 from collections.abc import Callable
 
 import pytest
+from hypothesis import given
+from hypothesis import strategies as st
 
 import symofros as sf
 from reference_models import MODELS
@@ -18,7 +20,7 @@ from symofros.expr.ops import ADD
 from symofros.expr.packs.combine import linear_combination
 from symofros.expr.packs.pack import WIDTH, Pack
 from symofros.generator.codegen.effort import effort
-from symofros.generator.codegen.limbs.plan import LimbPlan
+from symofros.generator.codegen.limbs.plan import LimbPlan, strongly_connected
 from symofros.generator.codegen.model import Packs, model_source
 from symofros.generator.codegen.packs import PackPlan
 from symofros.generator.programs import ProgramBuilder
@@ -133,3 +135,22 @@ def test_limb_vectors_leave_operands_of_packs_and_sines() -> None:
     packs = PackPlan(program.graph, needed_nodes(program.graph, edges), {}, edges)
     made = LimbPlan(program.graph, packs.nodes, {}, edges, program.limbs, packs)
     assert packs.vector_of_node and not packs.vector_of_node.keys() & made.vector_of_node.keys()
+
+
+def test_a_chain_has_no_groups() -> None:
+    """As long a chain as a function has operations."""
+    assert not list(strongly_connected({i: {i - 1} for i in range(1, 50_000)}))
+
+
+@given(st.lists(st.tuples(st.integers(0, 9), st.integers(0, 9)), max_size=25))
+def test_groups_are_strongly_connected_components(pairs: list[tuple[int, int]]) -> None:
+    needs: dict[int, set[int]] = {}
+    for a, b in pairs:
+        needs.setdefault(a, set()).add(b)
+    reached = {a: {a} for a in range(10)}
+    for _ in range(10):
+        for a, others in needs.items():
+            reached[a] |= {c for b in others for c in reached[b]}
+    groups = {frozenset(b for b in reached[a] if a in reached[b]) for a in range(10)}
+    groups = {group for group in groups if len(group) > 1 or any(a in needs.get(a, ()) for a in group)}
+    assert {frozenset(group) for group in strongly_connected(needs)} == groups

@@ -14,7 +14,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.errors import ShapeError
-from symofros.studio.viewer.page.signal_plot import plot_html
+from symofros.studio.viewer.page.plots import plot_html
 from symofros.studio.viewer.playing.motion import motion_of
 from symofros.studio.viewer.playing.signals import Signal, signals_of
 
