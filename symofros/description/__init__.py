@@ -29,6 +29,8 @@ from symofros.description.forces import Damper as Damper
 from symofros.description.forces import Friction as Friction
 from symofros.description.forces import JointElement as JointElement
 from symofros.description.forces import Spring as Spring
+from symofros.description.frames import IDENTITY_POSE as IDENTITY_POSE
+from symofros.description.frames import Pose as Pose
 from symofros.description.joints.joint import WORLD as WORLD
 from symofros.description.joints.joint import Joint as Joint
 from symofros.description.joints.joint import Limits as Limits
@@ -36,8 +38,6 @@ from symofros.description.joints.joint_kinds import KINDS as KINDS
 from symofros.description.parser import ExpressionError as ExpressionError
 from symofros.description.parser import parse as parse
 from symofros.description.parser import tokenize as tokenize
-from symofros.description.pose import IDENTITY_POSE as IDENTITY_POSE
-from symofros.description.pose import Pose as Pose
 from symofros.description.reading import MODEL_SUFFIXES as MODEL_SUFFIXES
 from symofros.description.reading import YAML_SUFFIXES as YAML_SUFFIXES
 from symofros.description.reading import fresh_name as fresh_name

@@ -1,10 +1,14 @@
-"""Frame: a named place on a body."""
+"""Frames, named places on bodies, and poses of frames in frames, as readers of files put them together."""
 
 from __future__ import annotations
 
 from dataclasses import dataclass
 from numbers import Real
+from typing import NamedTuple
 
+import numpy as np
+
+from symofros.base.arrays import Array
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Vector, as_vector
 from symofros.errors import DescriptionError, Problem
@@ -45,3 +49,26 @@ class Frame:
     def station(self) -> float:
         """Station x/L on a beam."""
         return 1.0 if self.at is None else self.at
+
+
+class Pose(NamedTuple):
+    """A frame B in a frame A.
+
+    Attributes:
+        p: Position p_AB (3,) [m].
+        R: Rotation R_AB (3, 3).
+    """
+
+    p: Array
+    R: Array
+
+    def __matmul__(self, other: Pose) -> Pose:
+        """The pose in A of a frame whose pose in B is given."""
+        return Pose(self.p + self.R @ other.p, self.R @ other.R)
+
+    def inverse(self) -> Pose:
+        """A in B."""
+        return Pose(-(self.R.T @ self.p), self.R.T)
+
+
+IDENTITY_POSE = Pose(np.zeros(3), np.eye(3))

@@ -8,8 +8,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from symofros.expr.adjoint import adjoint
-from symofros.expr.derivative import partials
+from symofros.expr.derivative import adjoint, partials
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.instants import operands_function

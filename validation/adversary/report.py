@@ -15,9 +15,43 @@ from symofros.tools import stored_json, write_atomically
 from ..reporting.command import Run, known
 from ..reporting.numbers import counted
 from ..reporting.record import Bullets, Data, Fact, Report, Section, Table, Topic, verdict
-from .catalogue import ATTACKS
+from .attack import Attack
+from .attacks import (
+    beam_runs,
+    beam_statics,
+    closed_dynamics,
+    diagram_runs,
+    engaging_runs,
+    event_runs,
+    held_apart,
+    inverse_kinematics,
+    loop_runs,
+    overconstrained_runs,
+    pushed_runs,
+    rigid_trees,
+    rolling_runs,
+    step_sizes,
+)
 from .search import Budget, Find, Tally, hunt
 from .writing import write_find
+
+_MODULES = (
+    rigid_trees,
+    closed_dynamics,
+    loop_runs,
+    rolling_runs,
+    step_sizes,
+    diagram_runs,
+    beam_statics,
+    beam_runs,
+    inverse_kinematics,
+    event_runs,
+    pushed_runs,
+    overconstrained_runs,
+    held_apart,
+    engaging_runs,
+)
+ATTACKS: dict[str, Attack] = {module.ATTACK.name: module.ATTACK for module in _MODULES}
 
 
 def measure(

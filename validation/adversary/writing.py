@@ -20,7 +20,7 @@ Route: {route}.
 Then: {said}.
 """
 
-from {package}.catalogue import ATTACKS
+from {package}.report import ATTACKS
 
 SCENE = {scene}
 

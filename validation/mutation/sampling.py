@@ -19,7 +19,7 @@ SCOPE = (
     "symofros/description/joints/joint_kinds.py",
     "symofros/description/beams/beam.py",
     "symofros/description/beams/shapes.py",
-    "symofros/description/beams/stiffness.py",
+    "symofros/description/beams/elastic.py",
     "symofros/description/forces.py",
     "symofros/description/constraints.py",
     "symofros/description/urdf/reader.py",

@@ -16,12 +16,23 @@ from ..reporting.plain import plain, restored
 from ..reporting.provenance import machine, now
 from ..reporting.questions import failure_texts
 from ..reporting.record import Bullets, Data, Fact, Report, Section, Table, Text, Topic, verdict
-from .catalogue import PROBLEMS
 from .figures import figure, grouped
 from .front import charted, front, seconds_at, usable
 from .problem import BenchmarkProblem, Point
+from .problems import andrews, arm, four_bar, pendulum, robot, soft_pendulum, spin_up, walls
 from .race import Result, race
 from .verdicts import choices, refused, verdicts
+
+PROBLEMS: dict[str, BenchmarkProblem] = {
+    "spin_up": spin_up.PROBLEM,
+    "robot": robot.PROBLEM,
+    "soft_pendulum": soft_pendulum.PROBLEM,
+    "arm": arm.PROBLEM,
+    "four_bar": four_bar.PROBLEM,
+    "andrews": andrews.PROBLEM,
+    "pendulum": pendulum.PROBLEM,
+    "walls": walls.PROBLEM,
+}
 
 
 def measure(

@@ -14,7 +14,7 @@ import typer
 import symofros as sf
 
 from ..adapters.mujoco import tree as mujoco
-from ..adapters.mujoco.rollout import roll_out
+from ..adapters.mujoco.motion import roll_out
 from ..contract.interface import Subject, Unsupported
 from ..mechanics.geometry import Array
 from ..reporting.command import Run

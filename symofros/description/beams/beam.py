@@ -13,6 +13,7 @@ from symofros.description.beams.elastic import (
     AXIS,
     CENTERS,
     ELASTIC,
+    IN_MATRIX,
     PRE_STRAINS,
     STRAIN_STIFFNESSES,
     STRAINS,
@@ -21,9 +22,9 @@ from symofros.description.beams.elastic import (
     ElasticDescription,
     Point,
     Theory,
+    stiffness_rows,
 )
 from symofros.description.beams.shapes import FAMILIES, Family, UserShape, as_shape
-from symofros.description.beams.stiffness import IN_MATRIX, stiffness_rows
 from symofros.description.entries import pairs_of, refuses_unknown_entries
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint

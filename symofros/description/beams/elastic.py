@@ -2,15 +2,20 @@
 
 Which directions have functions, which entries of a beam the theory has no use for, whether it holds at any bending.
 `Beam.elastic` is the row of the theory that a beam states. To add a theory: its name in `Theory`, a row of `_ROWS`, and
-its mechanics, a folder of `symofros/mechanics/beams/` with a row of `theories.py` there.
+its mechanics, a folder of `symofros/mechanics/beams/` with a row of `theories.py` there. A
+section's matrix of stiffness, force and moment per strain, is here, too.
 """
 
 from __future__ import annotations
 
+import math
 from dataclasses import dataclass
-from typing import Literal, get_args
+from itertools import combinations
+from typing import Any, Literal, get_args
 
-from symofros.description.values import Value
+from symofros.base.arguments import entries_of
+from symofros.description.values import Value, as_values
+from symofros.errors import DescriptionError, Problem
 
 Theory = Literal["second_order", "strain"]
 THEORIES: tuple[Theory, ...] = get_args(Theory)
@@ -82,3 +87,44 @@ _ROWS = (
 )
 
 ELASTIC: dict[str, ElasticDescription] = {row.name: row for row in _ROWS}
+
+
+# Strains in the order of a matrix of stiffness, and what such a matrix takes the place of.
+MATRIX_ORDER = ("stretch", "shear_y", "shear_z", "twist_rate", "curvature_y", "curvature_z")
+IN_MATRIX = ("EI_y", "EI_z", "GJ", *STRAIN_STIFFNESSES, "EI_yz", "tension_center", "shear_center")
+# Difference of two entries across the diagonal of a matrix of stiffness, over the root of the product of the
+# diagonal's: programs for sections write seven digits.
+_ASYMMETRY = 1e-6
+
+
+def stiffness_rows(stated: Any, label: str) -> tuple[tuple[Value, ...], ...]:
+    """A matrix of stiffness (6, 6), made symmetric where rounding left a difference; empty where none is stated.
+
+    Args:
+        stated: Its rows, or nothing.
+        label: What it is, for errors.
+
+    Raises:
+        DescriptionError: It has other rows, or is not symmetric.
+    """
+    listed = entries_of(stated)
+    listed = [stated] if listed is None else listed
+    if not listed:
+        return ()
+    size = len(MATRIX_ORDER)
+    if len(listed) != size:
+        rule = f"{size} rows of {size} entries: {', '.join(MATRIX_ORDER)}"
+        raise DescriptionError(Problem(label, f"{len(listed)} rows", rule, "give all, zeros included"))
+    rows = [list(as_values(row, size, f"{label}[{i}]")) for i, row in enumerate(listed)]
+    for i, j in combinations(range(size), 2):
+        a, b, first, second = rows[i][j], rows[j][i], rows[i][i], rows[j][j]
+        if a == b:
+            continue
+        if isinstance(a, float) and isinstance(b, float) and isinstance(first, float) and isinstance(second, float):
+            if abs(a - b) <= _ASYMMETRY * math.sqrt(abs(first * second)):
+                rows[i][j] = rows[j][i] = 0.5 * (a + b)
+                continue
+        rule = "a matrix of stiffness is symmetric: forces have the strain energy as their potential"
+        found = f"[{i}][{j}] is {a}, [{j}][{i}] is {b}"
+        raise DescriptionError(Problem(f"{label} is not symmetric", found, rule, "state the same value for both"))
+    return tuple(map(tuple, rows))

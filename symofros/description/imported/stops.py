@@ -17,9 +17,9 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.base.rotations import skew
 from symofros.description.forces import Stop
+from symofros.description.frames import IDENTITY_POSE, Pose
 from symofros.description.imported.geometry import matrix_of
 from symofros.description.joints.joint import Joint
-from symofros.description.pose import IDENTITY_POSE, Pose
 from symofros.description.remarks import Remarks
 from symofros.description.system import Inertia, RigidBody
 from symofros.description.values import Value

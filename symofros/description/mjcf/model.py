@@ -19,8 +19,7 @@ from symofros.description.mjcf.equalities import EqualityReader
 from symofros.description.mjcf.joints import FREE, Chain, JointReader
 from symofros.description.mjcf.meshes import DrawnMesh
 from symofros.description.mjcf.names import Names
-from symofros.description.mjcf.textures import Texture
-from symofros.description.mjcf.visuals import visuals_of
+from symofros.description.mjcf.visuals import Texture, visuals_of
 from symofros.description.remarks import Remarks
 from symofros.description.system import Inertia
 from symofros.errors import DescriptionError, Problem

@@ -21,7 +21,7 @@ from symofros.description.mjcf.files import Folder
 from symofros.description.mjcf.meshes import Meshes
 from symofros.description.mjcf.model import Importer, Stated
 from symofros.description.mjcf.sections import Sections
-from symofros.description.mjcf.textures import textures_of
+from symofros.description.mjcf.visuals import textures_of
 from symofros.description.packages import Packages
 from symofros.description.reading import Reading
 from symofros.description.remarks import Remarks

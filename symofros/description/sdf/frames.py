@@ -9,8 +9,8 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import dataclass
 
+from symofros.description.frames import IDENTITY_POSE, Pose
 from symofros.description.joints.joint import WORLD
-from symofros.description.pose import IDENTITY_POSE, Pose
 from symofros.description.sdf.values import SdfValues
 from symofros.description.xml_nodes import Element
 from symofros.errors import did_you_mean

@@ -16,12 +16,11 @@ import numpy as np
 from symofros.description.closing import BLOCKED, closing_remedy
 from symofros.description.constraints import MIMICS, Closure, Coupling, mimic_cycle, mimicry
 from symofros.description.forces import Spring
-from symofros.description.frames import Frame
+from symofros.description.frames import Frame, Pose
 from symofros.description.imported.geometry import Exact
 from symofros.description.imported.tree import ImportedBody, ImportedJoint, Placement, Resistance
 from symofros.description.joints.joint import WORLD, Joint, Limits
 from symofros.description.joints.joint_kinds import KINDS, JointKindName
-from symofros.description.pose import Pose
 from symofros.description.sdf.frames import Frames
 from symofros.description.sdf.values import UNIT_NORM_TOL, SdfValues
 from symofros.description.values import IDENTITY, Vector

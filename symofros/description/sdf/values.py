@@ -8,8 +8,8 @@ from dataclasses import dataclass, field
 import numpy as np
 
 from symofros.base.rotations import normalized, quaternion_matrix
+from symofros.description.frames import IDENTITY_POSE, Pose
 from symofros.description.imported.geometry import roll_pitch_yaw, stated_rotation
-from symofros.description.pose import IDENTITY_POSE, Pose
 from symofros.description.remarks import remark_unread
 from symofros.description.system import Inertia
 from symofros.description.urdf.values import Values, finite_numbers

@@ -19,12 +19,11 @@ from symofros.base.arrays import Array
 from symofros.description.closing import BLOCKED
 from symofros.description.constraints import Closure, Constraint, Rod
 from symofros.description.forces import Anchor
-from symofros.description.frames import Frame
+from symofros.description.frames import Frame, Pose
 from symofros.description.imported.geometry import Exact
 from symofros.description.imported.tree import ImportedJoint, Placement, Resistance
 from symofros.description.joints.joint import WORLD, Joint, Limits
 from symofros.description.joints.joint_kinds import JointKindName
-from symofros.description.pose import Pose
 from symofros.description.remarks import Remarks
 from symofros.description.usd.masses import Units
 

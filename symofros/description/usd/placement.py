@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.description.frames import Pose
 from symofros.description.imported.geometry import rotation_of
-from symofros.description.pose import Pose
 
 # Axes of a frame that deviate by more from right angles are sheared, for which a rigid body has no use.
 SHEAR = 1e-6

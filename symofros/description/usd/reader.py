@@ -15,13 +15,12 @@ from typing import Any
 import numpy as np
 
 from symofros.description.constraints import Constraint
-from symofros.description.frames import Frame
+from symofros.description.frames import IDENTITY_POSE, Frame, Pose
 from symofros.description.imported.building import reading_of
 from symofros.description.imported.geometry import Exact
 from symofros.description.imported.options import DEFAULT_OPTIONS, ImportOptions
 from symofros.description.imported.tree import ImportedBody, ImportedTree
 from symofros.description.joints.joint import WORLD
-from symofros.description.pose import IDENTITY_POSE, Pose
 from symofros.description.reading import Reading, fresh_name
 from symofros.description.remarks import Remarks
 from symofros.description.usd.check import faults

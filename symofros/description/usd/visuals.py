@@ -8,8 +8,8 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
+from symofros.description.frames import Pose
 from symofros.description.imported.geometry import stated_rotation
-from symofros.description.pose import Pose
 from symofros.description.usd.placement import Affine
 from symofros.description.visual import Visual, color_of
 

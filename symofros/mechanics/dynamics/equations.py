@@ -12,11 +12,9 @@ from symofros.mechanics.beams.theories import theory_of
 from symofros.mechanics.dynamics.applied.forces import stored_energy
 from symofros.mechanics.dynamics.bodies.inertia import inertia_inputs
 from symofros.mechanics.dynamics.centroidal import central_mass, centroidal_momentum, centroidal_rate
-from symofros.mechanics.dynamics.coriolis import coriolis_matrix
 from symofros.mechanics.dynamics.derivatives import recursion
 from symofros.mechanics.dynamics.derivatives.differentiation import by_configuration, by_inputs
 from symofros.mechanics.dynamics.derivatives.responses import DirectChange, Responses, responses
-from symofros.mechanics.dynamics.energy import kinetic_energy, potential_energy
 from symofros.mechanics.dynamics.equations_of_motion import EquationsOfMotion
 from symofros.mechanics.dynamics.forward.articulated import (
     articulated_joints,
@@ -25,7 +23,13 @@ from symofros.mechanics.dynamics.forward.articulated import (
 )
 from symofros.mechanics.dynamics.jourdain import inertia_forces
 from symofros.mechanics.dynamics.mass_matrix import Matrix
-from symofros.mechanics.dynamics.momentum import coadjoint, momentum_rate
+from symofros.mechanics.dynamics.momentum import (
+    coadjoint,
+    coriolis_matrix,
+    kinetic_energy,
+    momentum_rate,
+    potential_energy,
+)
 from symofros.mechanics.topology.tree import coupled_speeds
 
 

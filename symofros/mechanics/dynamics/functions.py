@@ -16,7 +16,7 @@ from symofros.expr.program import Function, Output, Program, Solver
 from symofros.expr.substitute import substitute
 from symofros.mechanics.dynamics.constraints.measures import measures_of
 from symofros.mechanics.dynamics.constraints.rows import retracted
-from symofros.mechanics.dynamics.derivatives.adjoints import weighted_derivatives
+from symofros.mechanics.dynamics.derivatives.differentiation import weighted_derivatives
 from symofros.mechanics.dynamics.derivatives.hessians import hessian, stacked
 from symofros.mechanics.dynamics.derivatives.responses import changes_tables
 from symofros.mechanics.dynamics.derivatives.second_derivatives import hessian_vector_product, second_derivatives

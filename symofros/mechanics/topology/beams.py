@@ -9,8 +9,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.description.beams.beam import STATION, Beam
-from symofros.description.beams.elastic import STRAINS
-from symofros.description.beams.stiffness import IN_MATRIX, MATRIX_ORDER
+from symofros.description.beams.elastic import IN_MATRIX, MATRIX_ORDER, STRAINS
 from symofros.description.values import ORIGIN, Term, Value, substituted, symbols
 from symofros.errors import Problem
 from symofros.expr.expression import Expression

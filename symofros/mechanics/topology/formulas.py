@@ -8,9 +8,8 @@ from typing import Literal, NamedTuple
 
 from symofros.base.names import RESERVED, TIME, name_of, quoted, symbol_of
 from symofros.description.beams.beam import STATION, Beam, BeamLoad
-from symofros.description.beams.elastic import STRAINS
+from symofros.description.beams.elastic import MATRIX_ORDER, STRAINS
 from symofros.description.beams.shapes import Samples
-from symofros.description.beams.stiffness import MATRIX_ORDER
 from symofros.description.constraints import Constraint, Coupling, Nonholonomic, Rod
 from symofros.description.contacts import Contact
 from symofros.description.entry_units import units_of

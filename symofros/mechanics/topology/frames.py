@@ -1,12 +1,12 @@
-"""Names of frames: those by which they are asked for, and what to say of those that a description does not have."""
+"""Names of frames: what to say of those that a description lacks; and names made of stated ones, which must differ."""
 
 from __future__ import annotations
 
 from collections import Counter
-from collections.abc import Iterable, Sequence
+from collections.abc import Iterable, Iterator, Sequence
 
-from symofros.description.system import Body
-from symofros.errors import did_you_mean
+from symofros.description.system import Body, System
+from symofros.errors import Problem, did_you_mean
 
 _SHOWN = 12
 
@@ -45,3 +45,36 @@ def frame_remedy(bodies: Iterable[Body], body: Body, frame: str, entry: str) -> 
     if len(owners) == 1:
         return f"it is on body '{owners[0]}': write {entry}{owners[0]}"
     return did_you_mean(frame, [item.name for item in body.frames])
+
+
+# What is named -> what states it, and the rule.
+_RULES = {
+    "frames": ("body", "bodies, and frames as BODY.FRAME, have different names"),
+    "joints": ("joint", "joints, and sections of beams as BEAM.FRAME, have different names"),
+    "conditions": ("constraint", "constraints, and their conditions as CONSTRAINT.x, have different names"),
+    "balls": ("contact", "contacts, and their balls as CONTACT.0, have different names"),
+}
+
+
+def derived_name_problems(system: System) -> Iterator[Problem]:
+    """Frames, sections of beams, conditions of constraints and balls of contacts with the name of another one."""
+    for (what, (kind, rule)), names in zip(_RULES.items(), _names(system), strict=True):
+        owners: dict[str, str] = {}
+        for name, owner in names:
+            # Two that are stated under one name are another problem.
+            if owners.setdefault(name, owner) != owner:
+                found = f"of '{owners[name]}' and '{owner}'"
+                where = system.origin.get((kind, owner), "")
+                yield Problem(f"two {what} called '{name}'", found, rule, "rename one of them", where)
+
+
+def _names(system: System) -> Iterator[list[tuple[str, str]]]:
+    """Names of each kind, with the name of what is stated."""
+    yield [(name, body.name) for body in system.bodies for _, name in full_names(body)]
+    joints = [(body.joint.name, body.joint.name) for body in system.bodies if body.joint is not None]
+    for beam in system.beams:
+        inner = [frame.name for frame in beam.frames if frame.station not in (0.0, 1.0)]
+        joints += [(f"{beam.name}.{frame}", beam.name) for frame in ("tip", *inner) if beam.modes]
+    yield joints
+    yield [(name, item.name) for item in system.constraints for name in item.conditions]
+    yield [(name, contact.name) for contact in system.contacts for name in contact.ball_names]

@@ -1,4 +1,4 @@
-"""Conditions on the numbers of friction, on which its maximum rests (docs/theory/rigid.md, (56) to (58))."""
+"""Conditions on the numbers of contacts and friction, on which its maximum rests (docs/theory/rigid.md, (56)-(58))."""
 
 from __future__ import annotations
 
@@ -9,8 +9,54 @@ from symofros.description.forces import Friction, Hysteresis, LuGre
 from symofros.description.system import System
 from symofros.description.values import Term, Value
 from symofros.errors import Problem
-from symofros.mechanics.topology.conditions import Condition
+from symofros.mechanics.topology.conditions import Condition, Sign
 from symofros.mechanics.topology.numbers import Numbers
+
+_SIGNS: dict[str, tuple[Sign, str, str]] = {
+    "stiffness": ("positive", "a surface pushes back", "give a stiffness above zero"),
+    "radius": ("not negative", "a ball has a radius, or is a point", "give its radius, or zero"),
+    "rim": ("positive", "a rim is a circle", "give a radius above zero, or leave it out"),
+    "segment": ("positive", "a segment has two ends", "give its length, or leave it out"),
+    "surface_radius": ("positive", "a curved surface has a radius", "give a radius above zero"),
+    "length": ("not negative", "a capsule is a ball that is drawn out", "give the distance of its ends"),
+    "dissipation": ("not negative", "contact takes energy, and never gives any", "give zero or more"),
+    "friction": ("not negative", "friction is against the slip", "give zero or more"),
+    "restitution": ("not negative", "an impact takes energy, and never gives any", "give a number from 0 to 1"),
+    "bristle_stiffness": ("positive", "bristles are springs", "give a stiffness above zero"),
+    "bristle_damping": ("positive", "bristles that are bent too far relax by their damping", "give one above zero"),
+    "minimum_velocity": ("positive", "friction is smoothed over a speed above zero", "give a small one, such as 0.001"),
+}
+
+
+def contact_conditions(system: System) -> Iterator[Condition]:
+    """Measures, stiffness and coefficients have their signs, and a ball fits into what encloses it."""
+    for contact in system.contacts:
+        where = system.origin.get(("connection", contact.name), "")
+        for label, (sign, rule, remedy) in _SIGNS.items():
+            value = getattr(contact, label)
+            if value is not None:
+                yield Condition((value,), sign, partial(_wrong, contact.name, label, value, rule, remedy, where))
+        for value in contact.size or ():
+            rule, remedy = "edges of a box are above zero", "give its three edges"
+            yield Condition((value,), "positive", partial(_wrong, contact.name, "size", value, rule, remedy, where))
+        if contact.rigid and contact.surface == "box":
+            value, rule = contact.radius, "a point has no normal of a box at its edges, from which that of a ball turns"
+            remedy = "round it by a radius above zero, or state a plane for each face"
+            yield Condition((value,), "positive", partial(_wrong, contact.name, "radius", value, rule, remedy, where))
+        if contact.restitution is not None:
+            left, rule = (Term(1.0) - Term(contact.restitution)).value, "an impact takes energy, and never gives any"
+            wrong = partial(_wrong, contact.name, "1 less restitution", left, rule, "give a number from 0 to 1", where)
+            yield Condition((left,), "not negative", wrong)
+        if contact.inside:
+            room = (Term(contact.surface_radius or 0.0) - Term(contact.radius)).value
+            rule, remedy = "a ball fits into what encloses it", "give a smaller ball, or a wider surface"
+            wrong = partial(_wrong, contact.name, "room around the ball", room, rule, remedy, where)
+            yield Condition((room,), "positive", wrong)
+
+
+def _wrong(name: str, label: str, value: Value, rule: str, remedy: str, where: str, numbers: Numbers) -> Problem:
+    return Problem(f"contact '{name}': {label} {numbers.value(value):g}", f"'{value}'", rule, remedy, where)
+
 
 _POSITIVE = ("dynamic", "static", "stiffness", "stribeck_velocity")
 

@@ -24,12 +24,10 @@ from symofros.mechanics.topology.constraints import (
     constraint_problems,
     same_body_problems,
 )
-from symofros.mechanics.topology.contacts import contact_conditions
 from symofros.mechanics.topology.coordinates import coordinate_symbols, rate_symbols, speed_symbols, state_names
-from symofros.mechanics.topology.derived_names import derived_name_problems
 from symofros.mechanics.topology.formulas import formula_problems, power_problems
-from symofros.mechanics.topology.frames import frame_remedy, frames_of
-from symofros.mechanics.topology.friction import friction_conditions
+from symofros.mechanics.topology.frames import derived_name_problems, frame_remedy, frames_of
+from symofros.mechanics.topology.friction import contact_conditions, friction_conditions
 from symofros.mechanics.topology.joints import joint_number_problems, joint_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import inertia_problems, massless_tip_conditions

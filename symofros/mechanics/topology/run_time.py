@@ -25,9 +25,8 @@ from symofros.mechanics.topology.beams import (
 )
 from symofros.mechanics.topology.conditions import Condition, Conditions
 from symofros.mechanics.topology.constraints import constraint_conditions
-from symofros.mechanics.topology.contacts import contact_conditions
 from symofros.mechanics.topology.formulas import Stated, stated_values
-from symofros.mechanics.topology.friction import friction_conditions
+from symofros.mechanics.topology.friction import contact_conditions, friction_conditions
 from symofros.mechanics.topology.joints import joint_number_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import inertia_conditions, massless_tip_conditions, moment_conditions

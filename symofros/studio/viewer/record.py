@@ -22,23 +22,20 @@ from symofros.diagrams.result import DiagramRun
 from symofros.errors import Problem, SymofrosError, did_you_mean
 from symofros.runtime.model import ArrayLike
 from symofros.simulation.results.trajectory import Trajectory
-from symofros.studio.viewer.drawing.arrows import ARROWS, Arrows
 from symofros.studio.viewer.drawing.drawing import Drawing
-from symofros.studio.viewer.drawing.layers import check_layer, initial_layers
+from symofros.studio.viewer.drawing.layers import ARROWS, Arrows, check_layer, initial_layers
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture
 from symofros.studio.viewer.drawing.tracks import tracks_of
 from symofros.studio.viewer.page.ghost_scene import GhostScene, legend_of
 from symofros.studio.viewer.page.viser_scene import ViserScene
 from symofros.studio.viewer.page.viser_server import LOOPBACK, start_server, stop_server
-from symofros.studio.viewer.playing.coordinate_units import coordinate_units
 from symofros.studio.viewer.playing.diagram_motion import played, shown_system_and_states
 from symofros.studio.viewer.playing.ghosts import ghosts_of
 from symofros.studio.viewer.playing.motion import Played, PlayedMotion, finite, motion_of, positive
 from symofros.studio.viewer.playing.run_forces import RunForces
-from symofros.studio.viewer.playing.signals import Signal, signals_of
-from symofros.studio.viewer.render.camera import Camera
+from symofros.studio.viewer.playing.signals import Signal, coordinate_units, signals_of
+from symofros.studio.viewer.render.camera import Camera, picture_height, scale_bar
 from symofros.studio.viewer.render.raster import Image, picture
-from symofros.studio.viewer.render.scale_bar import picture_height, scale_bar
 from symofros.studio.viewer.replays.reduced import reducing, tolerance_of
 from symofros.studio.viewer.replays.replay import lighter, replay_page
 

@@ -19,11 +19,10 @@ from symofros.studio.viewer.page.cameras import CameraWatch
 from symofros.studio.viewer.page.scene_state import Acting
 from symofros.studio.viewer.page.viewer_page import ViewerPage
 from symofros.studio.viewer.page.viser_server import LOOPBACK, PORT, start_server, stop_server
-from symofros.studio.viewer.playing.coordinate_units import coordinate_units
 from symofros.studio.viewer.playing.ghosts import ghosts_of
 from symofros.studio.viewer.playing.motion import Played, finite, motion_of, positive
 from symofros.studio.viewer.playing.player import Player
-from symofros.studio.viewer.playing.signals import signals_of
+from symofros.studio.viewer.playing.signals import coordinate_units, signals_of
 
 _READY = 60.0  # Seconds that a page's first word waits for the picture.
 RATE = 60.0  # Pictures a second at most; browsers show no more.

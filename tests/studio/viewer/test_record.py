@@ -15,8 +15,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.errors import SymofrosError
 from symofros.studio.viewer.drawing.poses import Mechanism
-from symofros.studio.viewer.render.camera import Camera
-from symofros.studio.viewer.render.scale_bar import scale_bar
+from symofros.studio.viewer.render.camera import Camera, scale_bar
 from symofros.studio.viewer.replays.replay import replay_page
 from tests.late import require
 from tests.studio.viewer.replays.unpacking import messages_of

@@ -13,7 +13,7 @@ import pytest
 
 import symofros as sf
 from symofros.simulation.results.outcome import Outcome
-from validation.adversary.catalogue import ATTACKS
+from validation.adversary.report import ATTACKS
 from validation.adversary.search import Budget, Find, Tally, hunt
 
 Plant = Callable[[pytest.MonkeyPatch], None]

@@ -8,7 +8,7 @@ import pytest
 from ruamel.yaml import YAML
 
 from validation.adversary.attack import Scene
-from validation.adversary.catalogue import ATTACKS
+from validation.adversary.report import ATTACKS
 
 FINDS = YAML(typ="safe").load(Path(__file__).with_name("finds.yaml"))
 

@@ -17,7 +17,7 @@ from typer.testing import CliRunner, Result
 import symofros as sf
 from validation.__main__ import app
 from validation.adversary.attack import Attack, Scene, Verdict, compared
-from validation.adversary.catalogue import ATTACKS
+from validation.adversary.report import ATTACKS
 from validation.adversary.search import Budget, Tally, hunt
 
 

@@ -8,9 +8,9 @@ from dataclasses import replace
 import pytest
 
 from validation.pareto import verdicts
-from validation.pareto.catalogue import PROBLEMS
 from validation.pareto.problem import OURS, Point, Target
 from validation.pareto.race import Result
+from validation.pareto.report import PROBLEMS
 
 PROBLEM = replace(PROBLEMS["spin_up"], targets=(Target("Exudyn", 1e-2, 200.0),))
 

@@ -18,7 +18,7 @@ from validation.accuracy.catalogue import TOPIC
 from validation.reporting.command import Done, write
 from validation.reporting.findings import Finding, Study, near
 from validation.reporting.plain import restored
-from validation.stability.catalogue import STUDIES as MAPPED
+from validation.stability.report import STUDIES as MAPPED
 from validation.stability.study import Verdict
 
 # Studies of half a second each, whose models other tests compile; the others take most of the time.

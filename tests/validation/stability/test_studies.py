@@ -9,10 +9,10 @@ import pytest
 
 from tests.models import sampled
 from validation.adapters.exudyn import contact as exudyn_contact
-from validation.stability.catalogue import STUDIES
 from validation.stability.closed_loops import baumgarte
 from validation.stability.contact import bounces, impact, incline
 from validation.stability.flexible import beams
+from validation.stability.report import STUDIES
 from validation.stability.study import Cell, Maps, survey
 
 

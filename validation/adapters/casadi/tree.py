@@ -18,8 +18,23 @@ from ...contract.interface import Unsupported
 from ...mechanics.assembly import BASE, assemble
 from ...mechanics.joint_kinds import PartKind
 from ..reach import unrepresented
-from .algebra import SX, UNIT, ZERO, exact, solve, symmetric
-from .links import Articulated, Link, Motion, composed, in_world, joined, links_of, shifted, shifted_to_parent
+from .links import (
+    SX,
+    UNIT,
+    ZERO,
+    Articulated,
+    Link,
+    Motion,
+    composed,
+    exact,
+    in_world,
+    joined,
+    links_of,
+    shifted,
+    shifted_to_parent,
+    solve,
+    symmetric,
+)
 
 # Kinds of simple joints that it has.
 _JOINTS: frozenset[PartKind] = frozenset({"revolute", "prismatic", "free"})

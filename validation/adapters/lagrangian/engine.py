@@ -23,8 +23,7 @@ from ...mechanics.geometry import Array, skew
 from ...mechanics.parts import coordinate_symbols, speed_symbols
 from ..description import StatedForces
 from .model import Translation
-from .motion import GROUND, Pose
-from .tree import WORLD, Lagrangian, rate_of, turning_of
+from .tree import GROUND, WORLD, Lagrangian, Pose, rate_of, turning_of
 
 NAME = "lagrangian"
 VERSION = f"casadi {version('casadi')}"

@@ -20,9 +20,8 @@ from ...mechanics.shape_functions import Shape
 from ..description import evaluate
 from . import rod as rods
 from .beam import POINTS, SX, Flexible, Line, rotation_about
-from .motion import Manifold, quaternion_rotation
 from .rod import ExactRod, Strain
-from .tree import WORLD, Node, Rotor, Solid, Symbols
+from .tree import WORLD, Manifold, Node, Rotor, Solid, Symbols, quaternion_rotation
 
 _CASADI: Mapping[str, Callable[..., SX]] = {
     "add": lambda a, b: a + b,

@@ -9,7 +9,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass
-from typing import Any, NamedTuple
+from typing import Any, Literal, NamedTuple
 
 import casadi as ca
 import numpy as np
@@ -18,8 +18,55 @@ from ...mechanics.geometry import Array
 from . import beam as beams
 from . import rod as rods
 from .beam import SX, Flexible
-from .motion import GROUND, Manifold, Pose, displaced
 from .rod import ExactRod
+
+Manifold = Literal["flat", "ball", "free"]
+
+
+class Pose(NamedTuple):
+    """A frame in the world, and its rates."""
+
+    p: SX
+    R: SX
+    dp: SX
+    dR: SX
+
+    def carried(self, p: SX, R: SX, dp: SX, dR: SX) -> Pose:
+        """A frame placed in this one, which moves there with the rates dp, dR."""
+        return Pose(self.p + self.R @ p, self.R @ R, self.dp + self.dR @ p + self.R @ dp, self.dR @ R + self.R @ dR)
+
+    def place(self, p: SX, dp: SX) -> tuple[SX, SX]:
+        """Places in this frame (3, n), in the world, and their velocities."""
+        n = p.shape[1]
+        return ca.repmat(self.p, 1, n) + self.R @ p, ca.repmat(self.dp, 1, n) + self.dR @ p + self.R @ dp
+
+    def spin(self) -> SX:
+        """Angular velocity along the frame's axes."""
+        W = self.R.T @ self.dR
+        return ca.vertcat(W[2, 1], W[0, 2], W[1, 0])
+
+
+GROUND = Pose(ca.SX.zeros(3), ca.SX.eye(3), ca.SX.zeros(3), ca.SX.zeros(3, 3))
+
+
+def displaced(manifold: Manifold, q: SX, e: SX) -> SX:
+    """Coordinates after a displacement along the speeds (1)."""
+    if manifold == "flat":
+        return q + e
+    if manifold == "ball":
+        half = e / 2
+        turn, scalar = half, ca.sqrt(1 - ca.sumsqr(half))
+        vector = q[3] * turn + scalar * q[:3] + ca.cross(q[:3], turn)
+        return ca.vertcat(vector, q[3] * scalar - ca.dot(q[:3], turn))
+    shift = e[:3] + ca.cross(e[3:], e[:3]) / 2
+    return ca.vertcat(q[:3] + quaternion_rotation(q[3:]) @ shift, displaced("ball", q[3:], e[3:]))
+
+
+def quaternion_rotation(quaternion: SX) -> SX:
+    """R of a unit quaternion (x, y, z, w)."""
+    K = ca.skew(quaternion[:3])
+    return ca.SX.eye(3) + 2 * quaternion[3] * K + 2 * (K @ K)
+
 
 WORLD = -1
 _COORDINATES: dict[Manifold, Callable[[int], int]] = {"flat": lambda n: n, "ball": lambda n: 4, "free": lambda n: 7}

@@ -10,7 +10,7 @@ import pinocchio as pin
 
 import symofros as sf
 
-from .messages import parser_messages
+from .urdf import parser_messages
 
 
 def description(path: Path, floating_base: bool) -> sf.System:

@@ -1,7 +1,12 @@
-"""Pinocchio's own reading of a URDF file: a second opinion on our importer, not only on our equations."""
+"""Pinocchio's own reading of a URDF file, a second opinion on our importer, and what its parser says on the way."""
 
 from __future__ import annotations
 
+import os
+import sys
+import tempfile
+from collections.abc import Iterator
+from contextlib import contextmanager
 from typing import Any
 
 import pinocchio as pin
@@ -13,7 +18,24 @@ from ...engines.plugins.pinocchio import CLOSING, WAYS
 from ...engines.plugins.writing.source import Source, SourceModel
 from ...mechanics.assembly import Assembly, Mover, assemble
 from ..charted import ChartedEngine
-from .messages import parser_messages
+
+
+@contextmanager
+def parser_messages() -> Iterator[list[str]]:
+    """Keep what C++ writes to the stream of errors: the lines are there at the end, without blank space around them."""
+    lines: list[str] = []
+    sys.stderr.flush()
+    kept = os.dup(2)
+    with tempfile.TemporaryFile() as file:
+        os.dup2(file.fileno(), 2)
+        try:
+            yield lines
+        finally:
+            os.dup2(kept, 2)
+            os.close(kept)
+            file.seek(0)
+            lines += [line.strip() for line in file.read().decode(errors="replace").splitlines() if line.strip()]
+
 
 NAME = "pinocchio-urdf"
 _ROOT_JOINT = "root_joint"

@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from ...adapters.mujoco.steps import stepped
+from ...adapters.mujoco.motion import stepped
 from ...mechanics.geometry import Array
 from ..problem import Contestant, Measured
 

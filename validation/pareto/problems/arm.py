@@ -13,7 +13,7 @@ import symofros as sf
 
 from ...adapters.exudyn.steps import Solver
 from ...adapters.exudyn.timed_systems import held as exudyn_held
-from ...adapters.mujoco import steps as mujoco_steps
+from ...adapters.mujoco import motion as mujoco_steps
 from ...adapters.mujoco import tree as mujoco
 from ...adapters.pinocchio import steps as pinocchio_steps
 from ...adapters.pinocchio import tree as pinocchio

@@ -11,7 +11,7 @@ import symofros as sf
 
 from ...adapters.exudyn.steps import Solver
 from ...adapters.exudyn.timed_systems import bars
-from ...adapters.mujoco.steps import loaded
+from ...adapters.mujoco.motion import loaded
 from ...mechanics.geometry import Array
 from ...stability.closed_loops import four_bars
 from ...stability.closed_loops.singular import DEFAULT, SOLIMP

@@ -7,7 +7,7 @@ from scipy.integrate import solve_ivp
 
 from ...adapters.exudyn.steps import Solver
 from ...adapters.exudyn.timed_systems import pendulum as exudyn_pendulum
-from ...adapters.mujoco.steps import loaded
+from ...adapters.mujoco.motion import loaded
 from ...mechanics.geometry import Array
 from ...stability.rigid import energy
 from ..contestants.exudyn import ExudynModel

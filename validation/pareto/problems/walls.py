@@ -11,7 +11,7 @@ import symofros as sf
 
 from ...adapters.exudyn.steps import Solver
 from ...adapters.exudyn.timed_systems import between_walls
-from ...adapters.mujoco.steps import loaded
+from ...adapters.mujoco.motion import loaded
 from ...mechanics.geometry import Array
 from ..contestants.exudyn import ExudynModel
 from ..contestants.mujoco import MujocoModel

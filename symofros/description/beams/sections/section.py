@@ -10,7 +10,15 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.description.beams.beam import SECTION
-from symofros.description.beams.elastic import CENTERS, ELASTIC, PRODUCTS, STRAIN_STIFFNESSES, Theory
+from symofros.description.beams.elastic import (
+    CENTERS,
+    ELASTIC,
+    IN_MATRIX,
+    PRODUCTS,
+    STRAIN_STIFFNESSES,
+    Theory,
+    stiffness_rows,
+)
 from symofros.description.beams.sections.matrices import (
     CHECK,
     OF_SECTION,
@@ -20,7 +28,6 @@ from symofros.description.beams.sections.matrices import (
     properties_of_stiffness,
 )
 from symofros.description.beams.sections.shear import ShearShape
-from symofros.description.beams.stiffness import IN_MATRIX, stiffness_rows
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import Term, Value, as_value, as_values, symbols
 from symofros.errors import DescriptionError, Problem

@@ -11,7 +11,7 @@ from dataclasses import dataclass
 from functools import reduce
 
 from symofros.description.beams.beam import Beam
-from symofros.description.beams.stiffness import MATRIX_ORDER
+from symofros.description.beams.elastic import MATRIX_ORDER
 from symofros.description.values import Term, Value
 from symofros.mechanics.beams.strain.strains import TURNING
 

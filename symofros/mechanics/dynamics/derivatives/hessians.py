@@ -9,7 +9,7 @@ from symofros.expr.derivative import along
 from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.packs.pack import WIDTH
 from symofros.mechanics.dynamics.applied.forces import rates_per_speed
-from symofros.mechanics.dynamics.derivatives.adjoints import weighted_derivatives
+from symofros.mechanics.dynamics.derivatives.differentiation import weighted_derivatives
 from symofros.mechanics.dynamics.mass_matrix import Matrix
 from symofros.mechanics.kinematics.links import TreeKinematics
 

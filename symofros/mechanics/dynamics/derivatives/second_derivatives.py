@@ -11,8 +11,7 @@ from symofros.expr.edges import ONE, ZERO, Edge
 from symofros.expr.graph import Graph
 from symofros.mechanics.dynamics.applied.forces import rates_per_speed
 from symofros.mechanics.dynamics.bodies.rotors import is_on_turning_axes
-from symofros.mechanics.dynamics.derivatives.adjoints import weighted_derivatives
-from symofros.mechanics.dynamics.derivatives.differentiation import by_inputs
+from symofros.mechanics.dynamics.derivatives.differentiation import by_inputs, weighted_derivatives
 from symofros.mechanics.dynamics.derivatives.hessians import commuting
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.mass_matrix import Matrix

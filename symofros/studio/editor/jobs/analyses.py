@@ -16,7 +16,7 @@ from symofros.studio.editor.jobs.bent_beams import bent_beams
 from symofros.studio.editor.jobs.request import Json, Tell, numbers_for_json, system_of, table
 from symofros.studio.editor.jobs.starts import StatedStart, stated_start, values_of
 from symofros.studio.viewer.drawing.poses import Mechanism
-from symofros.studio.viewer.playing.coordinate_units import coordinate_units
+from symofros.studio.viewer.playing.signals import coordinate_units
 
 # A mode is drawn at one turn a second, so that those of all frequencies can be watched.
 CYCLES, STATES_A_CYCLE = 4, 24

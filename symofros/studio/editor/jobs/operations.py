@@ -29,7 +29,7 @@ from symofros.studio.editor.jobs.bent_beams import bent_beams
 from symofros.studio.editor.jobs.request import Json, Tell, diagram_of, number_of, numbers_for_json, system_of, table
 from symofros.studio.editor.jobs.starts import laws_of, stated_start, whole_of
 from symofros.studio.editor.jobs.stops import events_of
-from symofros.studio.viewer.playing.coordinate_units import coordinate_units
+from symofros.studio.viewer.playing.signals import coordinate_units
 
 POINTS, MAX_POINTS = 1000, 5000
 

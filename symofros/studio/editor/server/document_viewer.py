@@ -18,7 +18,7 @@ from symofros.studio.editor.editing.data_edits import EditError, four_parts, ref
 from symofros.studio.editor.jobs.bent_beams import bent_beams
 from symofros.studio.editor.jobs.run_states import states_of, trajectory_of
 from symofros.studio.editor.jobs.worker import error_of
-from symofros.studio.viewer.drawing.arrows import ARROWS
+from symofros.studio.viewer.drawing.layers import ARROWS
 from symofros.studio.viewer.drawing.poses import Mechanism
 from symofros.studio.viewer.playing.motion import PlayedMotion, motion_of
 from symofros.studio.viewer.playing.run_forces import RunForces

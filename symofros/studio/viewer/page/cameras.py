@@ -11,7 +11,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.studio.viewer.render.scale_bar import picture_height
+from symofros.studio.viewer.render.camera import picture_height
 
 _STEP = 1e-3  # Of the mechanism's size, by which a body moves before cameras do: viser passes over smaller moves.
 

@@ -9,16 +9,15 @@ from typing import Any, Protocol
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.studio.viewer.drawing.arrows import ARROWS
 from symofros.studio.viewer.drawing.drawing import Drawing
-from symofros.studio.viewer.drawing.layers import LAYERS
+from symofros.studio.viewer.drawing.layers import ARROWS, LAYERS
 from symofros.studio.viewer.page.ghost_scene import legend_of
 from symofros.studio.viewer.page.plots import ForcePlot, SignalPlot
 from symofros.studio.viewer.playing.ghosts import Ghost
 from symofros.studio.viewer.playing.player import Player
 from symofros.studio.viewer.playing.signals import Signal
 from symofros.studio.viewer.playing.sliders import Slider
-from symofros.studio.viewer.render.scale_bar import scale_bar
+from symofros.studio.viewer.render.camera import scale_bar
 
 _SPEEDS = ("0.01", "0.1", "0.25", "0.5", "1", "2", "5")
 _LAYER_NAMES = {

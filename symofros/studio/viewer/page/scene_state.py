@@ -13,8 +13,8 @@ from symofros.studio.viewer.drawing.drawing import Drawing, same_geometry
 from symofros.studio.viewer.drawing.layers import initial_layers
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture, State
 from symofros.studio.viewer.page.viser_scene import ViserScene
-from symofros.studio.viewer.playing.coordinate_units import coordinate_units
 from symofros.studio.viewer.playing.run_forces import RunForces
+from symofros.studio.viewer.playing.signals import coordinate_units
 from symofros.studio.viewer.playing.sliders import Slider, coordinates_of, sliders_of, values_of
 
 Acting = tuple[RunForces, float]

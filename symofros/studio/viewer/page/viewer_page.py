@@ -12,7 +12,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BeamBending, bending_notes
-from symofros.studio.viewer.drawing.arrows import ARROWS
+from symofros.studio.viewer.drawing.layers import ARROWS
 from symofros.studio.viewer.drawing.poses import Mechanism, State
 from symofros.studio.viewer.page.cameras import CameraFollow
 from symofros.studio.viewer.page.frame_handle import FrameHandle

@@ -11,10 +11,9 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.mechanics.topology import BASE
-from symofros.studio.viewer.drawing.arrows import ARROWS, HEAD, HEAD_RADIUS, SHAFT_RADIUS, Arrows
 from symofros.studio.viewer.drawing.drawing import Color, Drawing, DrawnBeam, DrawnConnector, DrawnPart
 from symofros.studio.viewer.drawing.ground import GRAVITY_COLOR, cell_of, gravity_arrow
-from symofros.studio.viewer.drawing.layers import LAYERS, check_layer
+from symofros.studio.viewer.drawing.layers import ARROWS, HEAD, HEAD_RADIUS, LAYERS, SHAFT_RADIUS, Arrows, check_layer
 from symofros.studio.viewer.drawing.meshes import on_grid, tube, tube_stations
 from symofros.studio.viewer.drawing.poses import Posture, Sweep, beam_sweep, connector_sweep
 from symofros.studio.viewer.render.camera import Camera

@@ -10,8 +10,8 @@ from symofros.base.arrays import Array
 from symofros.description import Closure, KnifeEdge, Rod, Rolling, System
 from symofros.mechanics.topology import SpanningTree, frame_of
 from symofros.simulation.results.trajectory import Trajectory
-from symofros.studio.viewer.drawing.arrows import ARROWS, Arrows, ArrowScale
 from symofros.studio.viewer.drawing.drawing import Drawing, LinkPoint
+from symofros.studio.viewer.drawing.layers import ARROWS, Arrows, ArrowScale
 from symofros.studio.viewer.drawing.poses import Posture
 
 # Share of the records whose largest arrow is no longer than what the scale is chosen by: impacts are short and large.

@@ -1,4 +1,4 @@
-"""Signals of a motion over time, to be plotted beside it: coordinates, inputs, energies, and what else is stated."""
+"""Signals of a motion over time, to be plotted beside it: coordinates in units for people, inputs, energies, others."""
 
 from __future__ import annotations
 
@@ -9,9 +9,25 @@ import numpy as np
 
 from symofros.base.arrays import Array, numeric
 from symofros.errors import Problem, ShapeError, SymofrosError
+from symofros.mechanics.beams import theory_of
+from symofros.mechanics.topology import SpanningTree, joint_units
 from symofros.runtime.model import ArrayLike
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.playing.motion import PlayedMotion
+
+
+def coordinate_units(tree: SpanningTree) -> dict[str, str]:
+    """Unit of each coordinate, where it is known: of a general joint it is not; a quaternion's parts have none."""
+    unit_of: dict[str, str] = {}
+    for link in tree.links:
+        start, size = link.q
+        names = tree.coordinates.q[start : start + size]
+        if link.tip_of is not None:
+            units = theory_of(link.tip_of).units
+        else:
+            units = joint_units(link.joint)
+        unit_of |= dict(zip(names, units, strict=False))  # A prescribed joint has none among q.
+    return unit_of
 
 
 @dataclass(frozen=True)

@@ -11,9 +11,9 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import Array
-from symofros.studio.viewer.drawing.arrows import ARROWS, HEAD, HEAD_RADIUS, SHAFT_RADIUS, Arrows
 from symofros.studio.viewer.drawing.drawing import Color, Drawing
 from symofros.studio.viewer.drawing.ground import GRAVITY_COLOR, gravity_arrow, ground_lines
+from symofros.studio.viewer.drawing.layers import ARROWS, HEAD, HEAD_RADIUS, SHAFT_RADIUS, Arrows
 from symofros.studio.viewer.drawing.meshes import Mesh, cone, cylinder, tube
 from symofros.studio.viewer.drawing.poses import Posture, beam_sweep, connector_sweep
 from symofros.studio.viewer.page.viser_scene import SEE_THROUGH

@@ -13,8 +13,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.studio.viewer.page.page_head import VISER_TITLE, fragment, page_head
 from symofros.studio.viewer.playing.signals import Signal
-from symofros.studio.viewer.render.camera import Camera
-from symofros.studio.viewer.render.scale_bar import LONGEST, UNITS
+from symofros.studio.viewer.render.camera import LONGEST, UNITS, Camera
 from symofros.studio.viewer.replays.packing import packed
 
 # Of viser's environment, which alone is too weak before a dark ground.

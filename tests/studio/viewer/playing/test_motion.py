@@ -13,9 +13,9 @@ from reference_models import MODELS
 from symofros.errors import ShapeError, SymofrosError
 from symofros.mechanics.topology.tree import build_tree
 from symofros.studio.viewer.playing import motion as motion_module
-from symofros.studio.viewer.playing.coordinate_units import coordinate_units
 from symofros.studio.viewer.playing.motion import PlayedMotion, motion_of, read_motion
 from symofros.studio.viewer.playing.player import Player
+from symofros.studio.viewer.playing.signals import coordinate_units
 from symofros.studio.viewer.playing.sliders import coordinates_of, sliders_of, values_of
 from tests.late import require
 

@@ -11,7 +11,7 @@ import pytest
 import symofros as sf
 from reference_models import MODELS
 from symofros.errors import SymofrosError, UnknownNameError
-from symofros.studio.viewer.drawing.arrows import ArrowScale
+from symofros.studio.viewer.drawing.layers import ArrowScale
 from symofros.studio.viewer.drawing.poses import Mechanism
 from symofros.studio.viewer.playing.run_forces import RunForces
 

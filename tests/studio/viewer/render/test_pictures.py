@@ -13,9 +13,8 @@ from symofros.studio.viewer.drawing.drawing import Drawing, DrawnPart
 from symofros.studio.viewer.drawing.layers import initial_layers
 from symofros.studio.viewer.drawing.meshes import Mesh, box, sphere
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture
-from symofros.studio.viewer.render.camera import Camera
+from symofros.studio.viewer.render.camera import Camera, picture_height, scale_bar
 from symofros.studio.viewer.render.raster import picture
-from symofros.studio.viewer.render.scale_bar import picture_height, scale_bar
 
 RED, BLUE = (255, 0, 0), (0, 0, 255)
 CAMERA = Camera(np.array([0.0, -10.0, 0.0]), np.zeros(3), np.array([0.0, 0.0, 1.0]), float(np.radians(40.0)))

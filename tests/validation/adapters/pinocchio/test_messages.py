@@ -6,7 +6,7 @@ import os
 
 import pytest
 
-from validation.adapters.pinocchio.messages import parser_messages
+from validation.adapters.pinocchio.urdf import parser_messages
 
 pin = pytest.importorskip("pinocchio")
 SLIDE = (

@@ -10,10 +10,10 @@ from scipy.special import ellipk
 
 import symofros as sf
 from tests.models import sampled
-from validation.pareto.catalogue import PROBLEMS
 from validation.pareto.front import usable
 from validation.pareto.problems import closed_forms, four_bar, robot, soft_pendulum, spin_up
 from validation.pareto.race import race
+from validation.pareto.report import PROBLEMS
 
 
 @pytest.mark.parametrize("name", sampled(("arm", "four_bar", "andrews", "walls"), ["four_bar"]))
