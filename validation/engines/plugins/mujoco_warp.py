@@ -11,7 +11,7 @@ from ..truth.devices import DEVICES
 from . import mujoco
 from .mujoco import covered, elsewhere
 from .mujoco.elements import KINDS
-from .mujoco.forces import COPY
+from .mujoco.forces import COPY, SPARSE
 from .newton import QUIET
 from .writing.source import Source, SourcePlugin, Way
 
@@ -137,6 +137,8 @@ WAYS = {
     "link_jacobians": Way("jac", f"{_Q}{_JACOBIANS}"),
     "joint_wrenches": Way("rne_postconstraint: cfrc_int", f"{_INVERSE}{_HELD}"),
     "step_dampers_implicit:njmax_0": _step("mjINT_EULER", sizes=", njmax=0"),
+    "step_velocities_implicit": _step("mjINT_IMPLICIT"),
+    "step_forces_implicit:sparse": _step("mjINT_IMPLICITFAST", SPARSE),
     "step_stiffness_implicit_lone": _step("mjINT_DISCRETE", "n.opt.tolerance = 0.0\n"),
     "inverse_dynamics_acted": Way("inverse", f"{_INVERSE}value = got(dw, 'qfrc_inverse')"),
     "forward_dynamics:put_data": Way(
