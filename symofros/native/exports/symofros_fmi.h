@@ -67,7 +67,13 @@ static int fmi_set(fmu *f, const uint32_t *references, size_t n, const double *v
     int found = FMU_OK;
     if (fmi_missing(references, n) || fmi_missing(values, n)) return FMU_NULL;
     for (i = 0; i < n && found == FMU_OK; ++i) found = fmu_set(f, references[i], values[i]);
-    return found;
+    if (found != FMU_NOT_ALLOWED) return found;
+    sprintf(f->message, "value reference %lu is not set to %.9g: %s", (unsigned long)references[i - 1], values[i - 1],
+            values[i - 1] - values[i - 1] == 0.0
+                ? "states are set up to initialisation, parameters in event mode rather than continuous-time mode, inputs until the"
+                  " end, others never"
+                : "values are finite");
+    return FMU_REFUSED;
 }
 
 static int fmi_save(fmu *f, void **state) {
@@ -122,7 +128,7 @@ static int fmi_differentiate(fmu *f, const uint32_t *unknown, size_t n_unknown, 
 
 static int fmi_refuse_step(fmu *f, double t, double h, const char *rule, double limit) {
     sprintf(f->message, "step of %.9g s from t = %.9g s refused: %.100s %.9g s", h, t, rule, limit);
-    return FMU_STEP_REFUSED;
+    return FMU_REFUSED;
 }
 
 /* One communication step. */

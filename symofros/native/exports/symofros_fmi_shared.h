@@ -9,7 +9,7 @@ static const char *category(FMI(Status) status) {
 static FMI(Status) outcome(const fmu *f, int found) {
     if (found == FMU_OK) return FMI(OK);
     if (found == FMU_BEYOND_THEORY) return say(f, FMI(Discard), f->message);
-    if (found == FMU_NOT_DIFFERENTIATED || found == FMU_STEP_REFUSED) return say(f, FMI(Error), f->message);
+    if (found == FMU_NOT_DIFFERENTIATED || found == FMU_REFUSED) return say(f, FMI(Error), f->message);
     return say(f, found == FMU_SINGULAR ? FMI(Discard) : FMI(Error), fmi_message(found));
 }
 
@@ -28,7 +28,12 @@ void FMI(FreeInstance)(FMI_INSTANCE c) {
 }
 
 FMI(Status) FMI(ExitInitializationMode)(FMI_INSTANCE c) {
-    ANSWER(fmi_exit_initialisation(f));
+    fmu *f = c;
+    int found;
+    ALLOWED(1);
+    found = fmi_exit_initialisation(f);
+    if (found == FMU_OK && fmu_note_start(f)) say(f, FMI(Warning), f->message);
+    return outcome(f, found);
 }
 
 FMI(Status) FMI(Terminate)(FMI_INSTANCE c) {

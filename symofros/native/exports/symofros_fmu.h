@@ -20,6 +20,7 @@ typedef struct fmu {
     int rates_valid, parameters_valid; /* whether `rates` are of the present state, and `pre` of the present parameters */
     double stop;
     double *rates, *rate_derivatives; /* (nq + nv) */
+    double *first; /* coordinates of the start before constraints move them (nq) */
     double *dq, *dv, *du, *dlam, *tangent;
     double *dpar, *par; /* direction, and parameters that are set aside (npar) */
     double *work, *frame_outputs;
@@ -76,6 +77,7 @@ static void fmu_layout(fmu *f, sym_arena *arena, const sym_plant *plant, size_t 
         f->work = sym_allocate(arena, sym_instance_differentiate_size(f->instance));
     }
     f->rates = sym_allocate(arena, nq + nv), f->rate_derivatives = sym_allocate(arena, nq + nv);
+    f->first = sym_allocate(arena, nq);
     f->dq = sym_allocate(arena, nq), f->dv = sym_allocate(arena, nv), f->du = sym_allocate(arena, (size_t)m->nu);
     f->dlam = sym_allocate(arena, (size_t)m->nc), f->tangent = sym_allocate(arena, nv);
     f->dpar = sym_allocate(arena, (size_t)m->npar), f->par = sym_allocate(arena, (size_t)m->npar);
@@ -226,12 +228,31 @@ static int fmu_initialise(fmu *f) {
     int status = fmu_prepare(f);
     if (status != FMU_OK) return status;
     f->rates_valid = 0;
+    memcpy(f->first, f->instance->q, (size_t)f->instance->model->nq * sizeof *f->first);
     status = sym_instance_project(f->instance);
     if (status != 0) return status == SYM_NO_ROTATION ? FMU_NO_ROTATION : FMU_SINGULAR;
     status = fmu_refresh(f);
     if (status != FMU_OK) return status;
     f->phase = f->cosim ? FMU_STEPPING : FMU_EVENT;
     return FMU_OK;
+}
+
+/* Change of a coordinate of the start, above which the log says that constraints moved it. Quaternions of 1e-3 from unit length
+ * change by less. */
+#define FMU_START_MOVED 2e-3
+
+/* Write how far constraints moved the start. Returns whether that is worth telling. */
+static int fmu_note_start(fmu *f) {
+    const sym_instance *instance = f->instance;
+    const int32_t nq = instance->model->nq;
+    int32_t i, worst = 0;
+    if (nq == 0) return 0;
+    for (i = 1; i < nq; ++i)
+        if (fabs(instance->q[i] - f->first[i]) > fabs(instance->q[worst] - f->first[worst])) worst = i;
+    if (!(fabs(instance->q[worst] - f->first[worst]) > FMU_START_MOVED)) return 0;
+    sprintf(f->message, "the start does not meet the constraints and was moved onto them: '%.60s' from %.9g to %.9g",
+            instance->model->q_names[worst], f->first[worst], instance->q[worst]);
+    return 1;
 }
 
 /* Begin to integrate from the present time, in Model Exchange: whether the importer has to stop somewhere since a formula of time

@@ -69,6 +69,7 @@ static int fmu_differentiate(fmu *f, size_t n_unknown, const uint32_t *unknown, 
 
 /* A beam that bends beyond its theory ends a step; below that nothing is said. */
 static int fmu_remark(fmu *f) { return (void)f, 0; }
+static int fmu_note_start(fmu *f) { return (void)f, 0; }
 
 static void fmu_reset(fmu *f) {
     f->instance = sym_program_init(f->instance, f->size, SYM_FMU_PROGRAM()); /* it began so before */
@@ -86,7 +87,7 @@ static int fmu_answer(fmu *f, int32_t status) {
     if (reason != NULL) return strcpy(f->message, reason), FMU_BEYOND_THEORY;
     if (status != SYM_PARAMETERS_REFUSED) return FMU_SINGULAR;
     sprintf(f->message, "%.250s", sym_program_refused(f->instance));
-    return FMU_STEP_REFUSED;
+    return FMU_REFUSED;
 }
 
 /* What depends on parameters: before the start also the first state. */
@@ -133,7 +134,7 @@ static int fmu_initialise(fmu *f) {
     int found;
     if (*fmu_time(f) != 0.0) {
         strcpy(f->message, "a diagram begins at t = 0: samples are multiples of their periods from there");
-        return FMU_STEP_REFUSED;
+        return FMU_REFUSED;
     }
     found = fmu_answer(f, sym_program_start(f->instance));
     if (found == FMU_OK) found = fmu_answer(f, sym_program_advance(f->instance, 0.0));

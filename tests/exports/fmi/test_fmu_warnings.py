@@ -57,6 +57,27 @@ def test_start_quaternions_are_normalised_or_refused(made: Any, scale: float) ->
         assert run is None and any("no rotation" in line for line in log)
 
 
+@pytest.mark.parametrize("version", ONE_VERSION)
+@pytest.mark.parametrize("given", [0.7, None])
+def test_a_start_that_constraints_move_is_logged(made: Any, version: int, given: float | None) -> None:
+    """The crank alone was turned: the loop was closed elsewhere, without a word."""
+    path = str(made("four_bar", version))
+    start = {} if given is None else {"q.q1": given}
+    run, log = simulated(path, stop_time=0.01, output_interval=0.005, start_values=start)
+    assert len(run) == 3
+    moved = [line for line in log if "does not meet the constraints and was moved onto them: 'q" in line]
+    assert len(moved) == (given is not None)
+
+
+def test_a_variable_that_is_not_set_is_named(made: Any) -> None:
+    """ "not allowed in this mode, or not a legal value" named neither the variable nor which of the two it was."""
+    path = str(made("four_bar", 3))
+    first = next(v for v in fmpy.read_model_description(path).modelVariables if v.name.startswith("q."))
+    run, log = simulated(path, stop_time=0.01, start_values={first.name: math.nan})
+    words = f"value reference {first.valueReference} is not set to nan: values are finite"
+    assert run is None and any(words in line for line in log)
+
+
 @pytest.mark.parametrize("kind", ["CoSimulation", "ModelExchange"])
 @pytest.mark.parametrize("length", [0.0, 1.01, -1.0])
 def test_input_quaternions_are_normalised_or_refused(made: Any, kind: Any, length: float) -> None:
