@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Sequence
+from collections.abc import Mapping, Sequence
 from functools import cache, lru_cache
 from typing import Any
 
@@ -10,10 +10,12 @@ import numpy as np
 
 from symofros.base.names import TIME
 from symofros.description.values import Value, symbols
+from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.instants import instant_operands
 from symofros.expr.program import Program
 from symofros.generator.codegen.interpreted import FormulaInstants
+from symofros.mechanics.dynamics.applied.forces import joint_forces
 from symofros.mechanics.kinematics.lowering import Lowering
 from symofros.mechanics.topology.formulas import stated_values, timed_values
 from symofros.mechanics.topology.tree import SpanningTree
@@ -42,6 +44,7 @@ class MechanismInstants:
     def __init__(self, tree: SpanningTree) -> None:
         self._tree, self._own = tree, tuple(timed_values(tree.system))
         self._search, self._found = lru_cache(maxsize=_KEPT)(self._search_of), lru_cache(maxsize=_KEPT)(self._find)
+        self._forces = lru_cache(maxsize=_KEPT)(self._forces_of)
         self._all_own = cache(self._own_of_states)
 
     def __call__(
@@ -69,6 +72,10 @@ class MechanismInstants:
         values = self._timed(formulas)
         return self._search(values, False).parameters if values else None
 
+    def bend(self, formulas: Sequence[Any], par: Array, states: Mapping[str, Array]) -> bool:
+        """As `Instants`."""
+        return self._forces((*self._all_own(), *self._stated(formulas))).bend(par, states)
+
     def _stated(self, formulas: Sequence[Any]) -> tuple[Value, ...]:
         given = [item.formula if isinstance(item, Rate) else item for item in formulas]
         return tuple(stated_formulas(self._tree, given))
@@ -78,7 +85,14 @@ class MechanismInstants:
 
     def _search_of(self, values: tuple[Value, ...], of_states: bool) -> FormulaInstants:
         lowering = Lowering(Graph(), self._tree.coordinates)
-        edges = [lowering.value(value) for value in values]
+        return self._operands_of(lowering, [lowering.value(value) for value in values], of_states)
+
+    def _forces_of(self, values: tuple[Value, ...]) -> FormulaInstants:
+        lowering = Lowering(Graph(), self._tree.coordinates)
+        edges = [*joint_forces(lowering, self._tree), *(lowering.value(value) for value in values)]
+        return self._operands_of(lowering, edges, True)
+
+    def _operands_of(self, lowering: Lowering, edges: Sequence[Edge], of_states: bool) -> FormulaInstants:
         return FormulaInstants(Program(self._tree.system.name, lowering.g, {}, ()), edges, of_states)
 
     def _find(self, values: tuple[Value, ...], par: tuple[float, ...], t0: float, t_end: float, kinks: bool) -> Array:

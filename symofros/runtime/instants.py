@@ -54,6 +54,16 @@ class Instants(Protocol):
         """
         ...
 
+    def bend(self, formulas: Sequence[Any], par: Array, states: Mapping[str, Array]) -> bool:
+        """Whether forces bend or jump along a motion: of joints' elements, by formula, and by laws.
+
+        Args:
+            formulas: Laws, as `Functions.formulas` takes them.
+            par: Run-time parameters (npar).
+            states: States of the motion: "t" (n, 1), "q" (n, nq), "v" (n, nv), "u" (n, nu).
+        """
+        ...
+
     def parameters(self, formulas: Sequence[Any]) -> tuple[int, ...] | None:
         """Indices of the parameters that instants depend on; None where there are none in any run."""
         ...
@@ -73,6 +83,9 @@ class _NoInstants:
         kinks: bool = False,
     ) -> Array:
         return np.zeros(0)
+
+    def bend(self, formulas: Sequence[Any], par: Array, states: Mapping[str, Array]) -> bool:
+        return False
 
     def parameters(self, formulas: Sequence[Any]) -> None:
         return None

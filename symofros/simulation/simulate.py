@@ -30,7 +30,7 @@ from symofros.simulation.results.notes import distinct, of_steps
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.results.trajectory import Found, Statistics, Trajectory
 from symofros.simulation.settings import Settings, check_fit, check_start, first_configuration, vector
-from symofros.simulation.stepping.loops import run_own, run_sundials
+from symofros.simulation.stepping.loops import run_to_end
 from symofros.simulation.stepping.status import Status
 from symofros.simulation.stepping.stepper import Stepper
 
@@ -145,7 +145,7 @@ def run_to_its_end(
 def _held_as_a_whole(
     run: Trajectory, stepper: Stepper, phases: Sequence[_Phase], settings: Settings, start: tuple[Array, Array, Array]
 ) -> Trajectory:
-    """A run with the note on what its events or contacts make of errors, where nothing is said of steps.
+    """A run with the note on what its events make of errors, where nothing is said of steps.
 
     Args:
         run: The run.
@@ -155,8 +155,7 @@ def _held_as_a_whole(
         start: Initial q, v, and the run-time parameters (npar).
     """
     acted, outcome = sum(phase.acted for phase in phases), run.outcome
-    switches = stepper.actions is not None or stepper.model.record.has_compliant_contacts
-    if not switches or outcome.kind not in ("finished", "event", "singular", "not converged"):
+    if stepper.actions is None or outcome.kind not in ("finished", "event", "singular", "not converged"):
         return run
     left_out = int(acted > 0 and not phases[-1].statistics.steps)  # What the actions of a terminal event leave.
     states = [x[: len(x) - left_out] for x in (run.t, run.q, run.v, run.u)]
@@ -224,8 +223,7 @@ def _phase(
 ) -> tuple[_Phase, list[int]]:
     """Run to the end or to the next action, and examine that; indices of the events met at its last instant."""
     began, worked = time.perf_counter(), time.thread_time()
-    drive = run_sundials if settings.method.family.multistep else run_own
-    recorded = drive(stepper, q, v, settings, show)
+    recorded = run_to_end(stepper, q, v, settings, show)
     seconds, worked = time.perf_counter() - began, time.thread_time() - worked
     states = recorded.arrays()
     bendings: tuple[BeamBending, ...] = ()

@@ -228,7 +228,7 @@ class Steppers(SteppedModel):
         """Motions that would begin off the constraints end before."""
         hand = self._hand
         chosen = np.flatnonzero(hand.begins)
-        inputs, par = hand.inputs_at_start(chosen, u), self.par if self.par.ndim == 1 else self.par[chosen]
+        inputs, par = hand.inputs_at_start(chosen, u), self.par[np.newaxis] if self.par.ndim == 1 else self.par[chosen]
         off = starts_off(
             self.model.carried, self._settings, hand.q0[chosen], hand.v0[chosen], inputs, par, hand.t0[chosen]
         )

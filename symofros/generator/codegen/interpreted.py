@@ -79,6 +79,26 @@ class FormulaInstants:
         ]
         return instants[np.any(changes, axis=0)] if changes else np.zeros(0)
 
+    def bend(self, par: Array, states: Mapping[str, Array]) -> bool:
+        """Whether an operand of a kink passes zero along states, or comes near to it.
+
+        Near is what changes by as much from one state to the next, or to the one beside these.
+
+        Args:
+            par: Run-time parameters (npar).
+            states: States "t", "q", "v" and "u", n rows each.
+        """
+        at = {**states, "par": par[np.newaxis]}
+        for operand, evaluation in zip(self._operands, self._evaluations, strict=True):
+            if operand.kind != InstantKind.KINK:
+                continue
+            value = np.broadcast_to(evaluation(at)[0], len(states["t"]))
+            change = np.abs(np.diff(value, prepend=value[:1], append=value[-1:]))
+            near = np.maximum(change[:-1], change[1:])
+            if not (np.abs(value) >= near).all():
+                return True
+        return False
+
 
 def _may_pass_over(operands: Sequence[Operand], values: Operands, steps: Array) -> bool:
     """Whether steps that end at these times (n) may pass over a part of a formula of the state.

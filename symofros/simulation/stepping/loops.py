@@ -95,7 +95,12 @@ def drive(
     return recorded
 
 
-def run_own(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show) -> Recorded:
+def run_to_end(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show) -> Recorded:
+    """Run to the end, or to `max_steps`, by our own steps or by SUNDIALS, as the method says."""
+    return (_run_sundials if settings.method.family.multistep else _run_own)(stepper, q, v, settings, show)
+
+
+def _run_own(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show) -> Recorded:
     """Run our own integrator to its end, or to `max_steps`."""
     recorded = Recorded(stepper.start(q, v, max(_ROWS, len(settings.grid))))
     recorded.take(stepper)
@@ -112,7 +117,7 @@ def run_own(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show
     return drive(stepper, recorded, most, lambda _: show(stepper.t))
 
 
-def run_sundials(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show) -> Recorded:
+def _run_sundials(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show) -> Recorded:
     """Run CVODE or IDA from one record to the next."""
     run, recorded = stepper.run, Recorded()
     solver = Ida(stepper) if settings.method.kind == "ida" else Cvode(stepper)

@@ -20,7 +20,14 @@ from symofros.runtime.constrained import STILL
 from symofros.runtime.manifold import difference, retract
 from symofros.runtime.model import Model
 from symofros.simulation.results.examination.energy_balance import EXPLODED
-from symofros.simulation.results.examination.finer_steps import HALVINGS, Part, States, change_of_states, percent
+from symofros.simulation.results.examination.finer_steps import (
+    HALVINGS,
+    TIGHTENINGS,
+    Part,
+    States,
+    change_of_states,
+    percent,
+)
 from symofros.simulation.results.examination.paths import Numbers
 from symofros.simulation.results.examination.run import MOST_STEPS
 from symofros.simulation.results.examination.switched_motion import SwitchedMotion, whole_run_note
@@ -257,7 +264,9 @@ class Examined(SwitchedMotion):
 
     def halvings(self, part: Part) -> int:
         """Number of halvings: more for windows of fixed steps, which may all err in the same way over a contact."""
-        return HALVINGS if self.h and part != "part" and (part != "whole" or self.short) else 1
+        if not self.h:
+            return TIGHTENINGS if part == "whole" else 1
+        return HALVINGS if part != "part" and (part != "whole" or self.short) else 1
 
     def jumps(self, fine: States) -> bool:
         """Whether the speed of a mechanism changes by half of its largest from one record to the next."""
@@ -330,7 +339,7 @@ def _decisions_note(run: Examined) -> str:
         return ""
     states, exact = run.coarse(run.window, 1), run.repeat(0, run.window.t_end, 0, _DECIDING)
     share, name = run.change(states, exact, "whole") if states is not None and exact is not None else (0.0, "")
-    if not share > run.tolerance:
+    if not share > run.tolerance_of("whole"):
         return ""
     return (
         f"steps of {run.h:.4g} s do not determine the motion of '{name}': their error changes what is decided at a"

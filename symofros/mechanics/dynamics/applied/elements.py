@@ -103,9 +103,9 @@ def _stop_force(lowering: Lowering, stop: Stop, q: Edge, v: Edge) -> Edge:
     total = ZERO
     for excess, outward in _excess(lowering, stop, q):
         # The damper acts beyond the limit, and on motion further out only: a stop pushes, it never pulls.
-        inward = g.call("max", outward * v, ZERO)
+        further = g.call("max", g.mul(outward * v, g.call("sign", excess)), ZERO)
         push = g.mul(lowering.value(stop.stiffness), excess)
-        push = g.add(push, g.mul(g.mul(lowering.value(stop.damping), inward), g.call("sign", excess)))
+        push = g.add(push, g.mul(lowering.value(stop.damping), further))
         total = g.add(total, -outward * push)
     return total
 

@@ -23,7 +23,7 @@ from symofros.mechanics.kinematics.lowering import Lowering
 from symofros.mechanics.spatial.wrench import Wrench, no_wrench
 from symofros.mechanics.topology.coordinates import joint_sizes, state_names
 from symofros.mechanics.topology.sticking import mode_name, sticks
-from symofros.mechanics.topology.tree import Link
+from symofros.mechanics.topology.tree import Link, SpanningTree
 
 
 def generalized_forces(kinematics: TreeKinematics, frames: FrameKinematics) -> list[Edge]:
@@ -37,7 +37,7 @@ def generalized_forces(kinematics: TreeKinematics, frames: FrameKinematics) -> l
         One edge a speed.
     """
     g, system = kinematics.g, kinematics.tree.system
-    total = _joint_forces(kinematics)
+    total = joint_forces(kinematics.lowering, kinematics.tree)
     index = {name: i for i, name in enumerate(kinematics.lowering.coordinates.speed_symbols)}
     for power in system.virtual_power:
         for speed, formula in power.forces:
@@ -105,10 +105,10 @@ def _coordinate(lowering: Lowering, link: Link, index: int) -> Edge:
     return q[index] if index < len(q) else ZERO
 
 
-def _joint_forces(kinematics: TreeKinematics) -> list[Edge]:
-    """Efforts, actuators and elements: their virtual power on their own speed is the force itself (eq. 23)."""
-    g, lowering, tree = kinematics.g, kinematics.lowering, kinematics.tree
-    total: list[Edge] = [ZERO] * kinematics.nv
+def joint_forces(lowering: Lowering, tree: SpanningTree) -> list[Edge]:
+    """Efforts, actuators and elements (nv): their virtual power on their own speed is the force itself (eq. 23)."""
+    g = lowering.g
+    total: list[Edge] = [ZERO] * len(tree.coordinates.v)
     actuator = len(tree.system.inputs)
 
     def add(k: int, edge: Edge) -> None:

@@ -19,7 +19,6 @@ from symofros.simulation.results.examination.diagnosis import diagnose_one
 from symofros.simulation.results.examination.input_faults import input_fault
 from symofros.simulation.results.examination.run import ExaminedRun, Ranks
 from symofros.simulation.results.examination.step_size import examine_run
-from symofros.simulation.results.examination.switched_run import SwitchedRun, switched_run_note
 from symofros.simulation.results.notes import distinct, of_steps
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.settings import Settings
@@ -69,10 +68,7 @@ class BatchExamination:
         run = self._made_again(run, failed=status < 0)
         run.stepper.inputs_at(*last)
         done = self.settings.max_steps is not None and steps >= self.settings.max_steps
-        outcome = diagnose_one(run, status, bendings, fault, interrupted=status == Status.RUNNING and not done)
-        if outcome.kind != "finished" or of_steps(outcome.notes):
-            return outcome
-        return replace(outcome, notes=(*outcome.notes, *self._notes_on_contacts(run)))
+        return diagnose_one(run, status, bendings, fault, interrupted=status == Status.RUNNING and not done)
 
     def outcome_with_events(
         self, i: int, status: int, states: tuple[Array, ...], steps: int, met: Sequence[Met]
@@ -105,20 +101,12 @@ class BatchExamination:
         settings.apply(stepper)
         return run_to_its_end(stepper, settings, *start).outcome.notes
 
-    def _notes_on_contacts(self, run: ExaminedRun) -> tuple[str, ...]:
-        """The note on what compliant contacts make of errors of a run without events that finished, if there is one."""
-        if not self.model.record.has_compliant_contacts or run.steps > _MADE_AGAIN:
-            return ()
-        fields: dict[str, Any] = {"par": run.stepper.par, "parts": 1, "stopped": False}
-        note = switched_run_note(SwitchedRun(run.stepper, run.settings, run.start, run.states, run.steps, **fields))
-        return (note,) if note else ()
-
     def notes_on_steps(self, i: int, states: tuple[Array, ...], steps: int) -> tuple[str, ...]:
         """Notes on the steps of run i, which finished; arguments as of `outcome`."""
         if self.initial.events:
             return of_steps(self._notes_by_itself(i, steps) or ())
         run = self._made_again(self._run(i, states, steps), failed=False)
-        return examine_run(run, ended_well=True, failed=False)[1] or self._notes_on_contacts(run)
+        return examine_run(run, ended_well=True, failed=False)[1]
 
     def first_parameters(self, i: int) -> Array:
         """Run-time parameters of run i where it begins, with its modes of contacts and of friction that sticks."""

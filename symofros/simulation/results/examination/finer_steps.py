@@ -17,14 +17,16 @@ from symofros.base.arrays import Array
 from symofros.simulation.stepping.resolution import TOLERANCE
 from symofros.simulation.stepping.windows import WHOLE, Window, windows
 
-# Steps are halved up to so many times while this share of the tolerance is still added; fractions of the step in words.
-HALVINGS, SETTLED = 4, 0.1
+# Steps are halved, or tolerances over a whole run tightened, up to so many times while this share of the tolerance is
+# still added; fractions of the step and of the tolerances in words.
+HALVINGS, TIGHTENINGS, SETTLED = 4, 2, 0.1
 FRACTIONS = ("all", "half", "a quarter", "an eighth", "a sixteenth")
+_TIGHTER = ("all", "a hundredth", "a ten-thousandth")
 # Power of time with which the change in a window may grow over the run, (17b); parts that show by how much it does grow
 # are so many times as long, each; the longest in steps; states that are compared in one, about; the least change.
 _GROWTH, _LONGER, _LONGEST, _COMPARED, _LEAST = 2.0, 8.0, 20_000, 256, 1e-300
-# Share of TOLERANCE below which what is to come is left at that.
-_SURE = 0.3
+# Share of TOLERANCE below which what is to come is left at that; of the tolerance, by which a whole run may change.
+_SURE, _WHOLE = 0.3, 0.3
 # Share of a state that is rounding.
 _ROUNDING = 1e-11
 # What the change in a window may grow to where external blocks answer to the motion, so that no part is made once more.
@@ -90,6 +92,10 @@ class HeldRun(ABC):
         """Change that is worth a note."""
         return TOLERANCE
 
+    def tolerance_of(self, part: Part) -> float:
+        """Change of a part that is worth a note: of the whole, what it errs by at the end, less than of a window."""
+        return self.tolerance * (_WHOLE if part == "whole" else 1.0)
+
     @abstractmethod
     def coarse(self, window: Window, every: int) -> States | None:
         """The run in a window, every so many of its steps where it has records of them."""
@@ -129,15 +135,15 @@ class HeldRun(ABC):
         """Change of a window by finer steps, refined until the change converges to a fraction of the noted size."""
         t = float(self.states[0][window.first])
         worst = Changed(0.0, t, max(1, round((window.t_end - t) / self.mean_step)))
-        coarse, before = self.coarse(window, every), 0.0
+        coarse, before, tolerance = self.coarse(window, every), 0.0, self.tolerance_of(part)
         for k in range(1, 1 + self.halvings(part)):
             fine = self.fine(window, k, every)
             if coarse is None or fine is None:
                 return replace(worst, refinements=k, arrived=False)
             share, name = self.change(coarse, fine, part)
             worst = max(worst, replace(worst, share=share, name=name, refinements=k), key=lambda one: one.size)
-            settled = abs(share - before) <= SETTLED * self.tolerance and (k > 1 or not self.jumps(fine))
-            if settled or worst.size > self.tolerance:
+            settled = abs(share - before) <= SETTLED * tolerance and (k > 1 or not self.jumps(fine))
+            if settled or worst.size > tolerance:
                 break
             before = share
         return worst
@@ -240,7 +246,7 @@ def other_end_note(run: HeldRun, changed: Changed, begin: str, stepping: str, cu
 
 def finer_words(run: HeldRun, changed: Changed) -> str:
     """The finest steps that a part was held against, in words."""
-    return f"{FRACTIONS[changed.refinements]} of that" if run.h else "a hundredth of them"
+    return f"{FRACTIONS[changed.refinements]} of that" if run.h else f"{_TIGHTER[changed.refinements]} of them"
 
 
 def percent(share: float) -> str:

@@ -20,7 +20,7 @@ from symofros.runtime.model import Model
 from symofros.simulation.inputs import Callback
 from symofros.simulation.results.examination.finer_steps import HeldRun, Part, States, change_of_states
 from symofros.simulation.settings import Settings
-from symofros.simulation.stepping.loops import Recorded, run_own
+from symofros.simulation.stepping.loops import Recorded, run_to_end
 from symofros.simulation.stepping.methods import METHODS, Method
 from symofros.simulation.stepping.stepper import Stepper
 from symofros.simulation.stepping.windows import WHOLE, Window
@@ -94,6 +94,15 @@ class ExaminedRun(HeldRun):
         moving = self.stepper.moving
         moves = bool(np.any(self.start[1][moving]) or np.any(self.states[2][:, moving]))
         return moving if moves else np.ones_like(moving)
+
+    @cached_property
+    def amplifies(self) -> bool:
+        """Whether contacts, or forces that bend or jump, may amplify errors, which no mode at a few states shows."""
+        if self.model.record.has_compliant_contacts:
+            return True
+        t, q, v, u = self.states
+        states = {"t": t[:, np.newaxis], "q": q, "v": v, "u": u}
+        return self.model.formula_instants.bend(self.stepper.laws, self.stepper.par, states)
 
     def metrics(self, q: Array, u: Array) -> Array:
         """Mass matrices (n, nv, nv) at configurations (n, nq), states left out; units where there is no mass matrix."""
@@ -242,7 +251,7 @@ class ExaminedRun(HeldRun):
         part = replace(part, project=part.project or (method != stepper.method and self.model.nc > 0))
         again = self._another(method)
         part.apply(again)
-        return again, run_own(again, q, v, part, lambda _: None)
+        return again, run_to_end(again, q, v, part, lambda _: None)
 
     def _another(self, method: Method) -> Stepper:
         """Another stepper for a part of the run, in which no event acts."""

@@ -19,6 +19,7 @@ from symofros.simulation.results.examination.input_impulses import input_impulse
 from symofros.simulation.results.examination.repetition import halved_step_note, tolerance_note
 from symofros.simulation.results.examination.run import ExaminedRun, norms_in
 from symofros.simulation.results.examination.stepped_over import stepped_over_note
+from symofros.simulation.results.examination.switched_run import SwitchedRun, switched_run_note
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.methods import Method
 from symofros.simulation.stepping.resolution import (
@@ -57,10 +58,9 @@ def examine_run(run: ExaminedRun, *, ended_well: bool, failed: bool) -> tuple[Mo
         notes.append(step_size_note(mode, run.settings.method, run.settings.dt, energy))
     if not ended_well:
         return mode, tuple(notes)
-    # No mode of a free flight shows the impact after it.
-    unseen = run.model.record.has_compliant_contacts or _samples_within_steps(run.stepper.inputs, run.settings)
-    evident = resolution.evident and not unseen
-    if mode is None:
+    whole = run.amplifies and run.stepper.actions is None  # Of a run with actions all parts are held as one.
+    if mode is None and not (whole and not run.short):
+        evident = resolution.evident and not _samples_within_steps(run.stepper.inputs, run.settings)
         notes.append(halved_step_note(run, evident=evident))
     notes.append(input_impulse_note(run))
     if not any(notes):
@@ -70,6 +70,8 @@ def examine_run(run: ExaminedRun, *, ended_well: bool, failed: bool) -> tuple[Mo
     notes.append(tolerance_note(run))
     if (mode is None or not mode.amplified) and not (mode is None and any(notes)):
         notes.append(energy_note(run))
+    if whole and mode is None and not any(notes):
+        notes.append(switched_run_note(SwitchedRun.of(run)))
     notes.append(creep_note(run))
     return mode, tuple(note for note in notes if note)
 

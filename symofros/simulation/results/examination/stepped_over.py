@@ -45,7 +45,7 @@ def stepped_over_note(run: ExaminedRun) -> str:
     if function and not run.same_inputs_again:
         return ""
     share = _SHARE * steps * max(1, run.stepper.method.tableau.stages)
-    least, most = _MOST if run.model.record.has_compliant_contacts else _LEAST, _MOST
+    least, most = _MOST if run.amplifies else _LEAST, _MOST
     if function:
         least, most = _CALLS if settings.adaptive else 0, _CALLS
     number = int(min(max(share, least), most))

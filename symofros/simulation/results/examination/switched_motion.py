@@ -17,6 +17,8 @@ COARSER, _TIGHTER, _TIGHTEST, _LOOSEST = -2, 100.0, 1e-13, 1e-4
 # Orders of convergence that are lower than the method's by more are stated, and give the error, where changes are below
 # what shows any; from this share of the tolerance on, as half the step changes half of what a run of order one errs by.
 _LOST, _SEEN, _DOUBTED, _LEAST = 0.5, 0.5, 0.5, 1.0
+# Share of the tolerance by which a coarser run may differ: where forces bend, both may err by more than they differ.
+_AGREED = 0.3
 
 
 class SwitchedMotion(HeldRun):
@@ -78,14 +80,18 @@ class SwitchedMotion(HeldRun):
         return order < self.method_order - _LOST
 
     def agrees(self) -> bool:
-        """Whether a run by coarser steps is the same within the tolerance."""
+        """Whether a run by coarser steps is the same within a share of the tolerance."""
         run, states = self.coarse(self.window, 1), self.fine(self.window, COARSER, 1)
-        return run is not None and states is not None and self.change(run, states, "whole")[0] <= self.tolerance
+        return (
+            run is not None
+            and states is not None
+            and self.change(run, states, "whole")[0] <= _AGREED * self.tolerance_of("whole")
+        )
 
 
 def tolerances(rtol: float, atol: float, refinements: int) -> tuple[float, float]:
     """Relative and absolute tolerance of a run by finer steps, or by coarser ones."""
-    refined = min(rtol, max(_TIGHTEST, rtol / _TIGHTER)) if refinements > 0 else rtol * _TIGHTER
+    refined = min(rtol, max(_TIGHTEST, rtol / _TIGHTER**refinements)) if refinements > 0 else rtol * _TIGHTER
     return refined, refined / rtol * atol
 
 
@@ -94,12 +100,12 @@ def whole_run_note(run: SwitchedMotion) -> tuple[str, int]:
     if run.tight and run.agrees():
         return "", COARSER
     stepping, cure = (f"steps of {run.h:.4g} s", "a smaller dt") if run.h else ("the tolerances", "tighter tolerances")
-    worst = run.changed(run.window, "whole")
+    worst, tolerance = run.changed(run.window, "whole"), run.tolerance_of("whole")
     if not worst.arrived:
         return other_end_note(run, worst, f" over {run.switched}", stepping, cure), 1
-    order = run.order() if run.h and _DOUBTED * run.tolerance < worst.size < _SEEN else math.nan
+    order = run.order() if run.h and _DOUBTED * tolerance < worst.size < _SEEN else math.nan
     error = run.error(worst.size, worst.refinements, order)
-    if not error > run.tolerance:
+    if not error > tolerance:
         return "", 1
     of = f" of '{worst.name}'" if worst.name else ""
     lost = f", with the order {max(order, 0.0):.1f} in place of {run.method_order}" if run.loses(order) else ""

@@ -1,4 +1,4 @@
-"""A run with actions of events or compliant contacts, held as a whole against finer steps: both amplify errors.
+"""A run with actions of events, or forces that bend or jump, held as a whole against finer steps: they amplify errors.
 
 docs/theory/simulation.md, section 8, (18f) to (18j).
 """
@@ -13,7 +13,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.simulation.events import undecided_note
-from symofros.simulation.results.examination.finer_steps import HALVINGS, Part, States, change_of_states
+from symofros.simulation.results.examination.finer_steps import HALVINGS, TIGHTENINGS, Part, States, change_of_states
 from symofros.simulation.results.examination.near_events import event_values, turns_near_zero
 from symofros.simulation.results.examination.run import MOST_STEPS, ExaminedRun, share_of
 from symofros.simulation.results.examination.switched_motion import SwitchedMotion, tolerances, whole_run_note
@@ -29,7 +29,7 @@ _PATIENCE = 8
 
 @dataclass(frozen=True, kw_only=True)
 class SwitchedRun(SwitchedMotion, ExaminedRun):
-    """A run whose events may act, and that is of several parts where they have; or one with compliant contacts.
+    """A run whose events may act, and that is of several parts where they have; or one with forces that bend or jump.
 
     Attributes:
         par: Run-time parameters (npar) that it began with.
@@ -38,8 +38,14 @@ class SwitchedRun(SwitchedMotion, ExaminedRun):
     """
 
     par: Array
-    parts: int
-    stopped: bool
+    parts: int = 1
+    stopped: bool = False
+
+    @classmethod
+    def of(cls, run: ExaminedRun) -> SwitchedRun:
+        """A run in which no event acts."""
+        stopped = run.stepper.run.terminal_event >= 0
+        return cls(run.stepper, run.settings, run.start, run.states, run.steps, par=run.stepper.par, stopped=stopped)
 
     @property
     def h(self) -> float:
@@ -62,23 +68,33 @@ class SwitchedRun(SwitchedMotion, ExaminedRun):
         return self.settings.rtol
 
     @property
+    def repeatable(self) -> bool:
+        """Whether it can be made once more, as a whole by any method: with the same inputs."""
+        return self.same_inputs_again
+
+    @property
     def switched(self) -> str:
-        """The run's contacts or actions of events, in words."""
+        """What switches in the run, or its actions of events, in words."""
         if self.stepper.actions is None:
-            return "its contacts"
+            return "its contacts" if self.model.record.has_compliant_contacts else "forces that bend or jump"
         words = {1: "what its events do", 2: "an action of an event"}
         return words.get(self.parts, f"{self.parts - 1} actions of events")
 
     def halvings(self, part: Part) -> int:
         """Maximum number of refinements."""
-        return HALVINGS if self.h and self.short else 1
+        return HALVINGS if self.h and self.short else 1 if self.h else TIGHTENINGS
 
     @cached_property
     def _rows(self) -> Any:
-        """Numbers of the records that are compared: some, and the last one; none at which something has jumped."""
-        later = np.diff(self.states[0]) > 0.0
+        """Numbers of the records that are compared: some, and the last one; none at which something has jumped.
+
+        They are as far apart in time as these allow: steps that adapt are short where speeds change at once.
+        """
+        t = self.states[0]
+        later = np.diff(t) > 0.0
         alone = np.flatnonzero(np.append(True, later)[:-1] & later)
-        return np.append(alone[:: max(1, len(alone) // _COMPARED)], len(later))
+        some = np.unique(np.searchsorted(t[alone], np.linspace(t[0], t[-1], _COMPARED)))
+        return np.append(alone[some[some < len(alone)]], len(later))
 
     def coarse(self, window: Window, every: int) -> States:
         """Records at the compared instants."""
@@ -124,10 +140,8 @@ def switched_run_note(run: SwitchedRun) -> str:
     """Note on what finer steps change of a run over its events; "" where that is little."""
     if run.settings.realtime or not run.model.nv or run.steps < 1 or not len(run.states[0]) or not run.repeatable:
         return ""
-    if run.stepper.actions is None:  # A short run has been held against finer steps, by (17).
-        return "" if run.h and run.short else whole_run_note(run)[0]
     note, shown = whole_run_note(run)
-    return note or _near_event_note(run, shown)
+    return note or ("" if run.stepper.actions is None else _near_event_note(run, shown))
 
 
 def _near_event_note(run: SwitchedRun, refinements: int) -> str:
