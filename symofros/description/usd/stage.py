@@ -17,6 +17,8 @@ MAX_BYTES = 512 << 20  # Of the root layer, which may hold meshes.
 # Wall time of the process [s]; its processor time is bounded by itself.
 TIMEOUT = 180
 _SOURCE = re.compile(r"^(Warning|Error|Runtime Error|Coding Error): in .*? (at line \d+ (of|in file) \S+ )?(--|:) ")
+# How each error that OpenUSD raises begins.
+_RAISED = re.compile(r"Error in '[^']*' at line \d+ in file \S+ : ")
 
 
 def stage_of(path: str | os.PathLike[str]) -> dict[str, Any]:
@@ -49,7 +51,7 @@ def stage_of(path: str | os.PathLike[str]) -> dict[str, Any]:
         raise DescriptionError(
             Problem(
                 "OpenUSD can't read the file",
-                f"{answer.get('fault', 'nothing'):.500}{warnings}",
+                f"{_first_fault(answer.get('fault', 'nothing')):.500}{warnings}",
                 "a stage whose layers are at hand",
                 "mend it; `usdchecker FILE` (OpenUSD's own) says more",
                 str(path),
@@ -68,6 +70,12 @@ def warnings_of(printed: str) -> list[str]:
     lines = (_SOURCE.sub("", line.strip()) for line in printed.splitlines())
     # It frames what it says of its environment, which is ours, in such signs.
     return list(dict.fromkeys(line for line in lines if line and not line.startswith("#")))
+
+
+def _first_fault(fault: str) -> str:
+    """The first of the errors that OpenUSD raised, without its place in OpenUSD's source: what is wrong in the file."""
+    texts = (text.replace(r"\u0009", " ").strip(" '\n") for text in _RAISED.split(fault))
+    return next((text for text in texts if text), fault)
 
 
 def _missing(text: str, path: str | os.PathLike[str]) -> Problem:

@@ -305,6 +305,15 @@ def test_damaged_usd_files_are_refused(tmp_path: Path, data: bytes) -> None:
         sf.load(file)
 
 
+def test_faults_of_a_stage_name_its_line_and_no_place_in_openusd(tmp_path: Path) -> None:
+    """The line in the file stood behind names of OpenUSD's own functions and files."""
+    file = tmp_path / "robot.usda"
+    file.write_text('#usda 1.0\ndef Xform "a" { double mass = 2 double other = 3 }\n')
+    with pytest.raises(sf.DescriptionError, match=r"found: .*robot\.usda:2:") as caught:
+        sf.load(file)
+    assert "pxrInternal" not in str(caught.value) and "u0009" not in str(caught.value)
+
+
 def test_a_missing_or_slow_usd_reader_is_reported(tmp_path: Path, monkeypatch: pytest.MonkeyPatch) -> None:
     file = tmp_path / "robot.usda"
     file.write_text(stage(body("arm", **ARM)))
