@@ -256,11 +256,8 @@ class ModelRecord:
     @property
     def set_by_actions(self) -> Named:
         """What actions of events may name."""
-        held = {
-            place: (switch.name, switch.engaged)
-            for switch in self.switches
-            for place in (*switch.rotation, *(at for _, at in switch.offsets))
-        }
+        places = ((switch, (*switch.rotation, *(at for _, at in switch.offsets))) for switch in self.switches)
+        held = {place: (switch.name, switch.engaged) for switch, of in places for place in of}
         return Named(self.par_names, self.q_names, self.v_names, held)
 
     @cached_property
@@ -367,8 +364,7 @@ class ModelRecord:
         Raises:
             SymofrosError: There are some.
         """
-        acting = [name for name, event in self.events.items() if event.acts or event.terminal]
-        if acting:
+        if acting := [name for name, event in self.events.items() if event.acts or event.terminal]:
             rule, remedy = "runs and steppers look for events", "leave them out: replace(system, events={})"
             raise SymofrosError(Problem(f"{what}: events of model '{self.name}'", ", ".join(acting), rule, remedy))
 
