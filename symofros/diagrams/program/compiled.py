@@ -259,7 +259,7 @@ class _Instants:
     """Instants at which formulas of time in a part's motion bend, jump or change fast: as of `Instants`."""
 
     def __init__(self, motion: Program) -> None:
-        self._motion = motion
+        self._motion, self._edges = motion, [edge for function in motion.functions for edge in function.edges()]
 
     def __call__(
         self,
@@ -276,9 +276,12 @@ class _Instants:
     def parameters(self, formulas: Sequence[object]) -> tuple[int, ...] | None:
         return self._search.parameters
 
+    def bend(self, formulas: Sequence[object], par: Array, states: Mapping[str, Array]) -> bool:
+        return FormulaInstants(self._motion, self._edges, of_states=True).bend(par, states)
+
     @cached_property
     def _search(self) -> FormulaInstants:
-        return FormulaInstants(self._motion, [edge for function in self._motion.functions for edge in function.edges()])
+        return FormulaInstants(self._motion, self._edges)
 
 
 def _model(

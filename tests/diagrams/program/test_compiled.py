@@ -13,7 +13,8 @@ from reference_models import MODELS
 from symofros.base.options import Options
 from symofros.diagrams.program import compiled
 from symofros.runtime.build.toolchain import Toolchain
-from tests.diagrams.parts import arm, ramp
+from tests.diagrams.parts import arm, moving, ramp
+from tests.simulation.mechanisms import slide
 
 
 def rising() -> sf.Diagram:
@@ -53,3 +54,14 @@ def test_another_backend_is_refused_immediately() -> None:
     with pytest.raises(sf.CompileError, match=r"backend 'interpreter'\n(.*\n)*  remedy: interpret it"):
         _ = simulation.compiled
     assert simulation.interpret(0.02, dt=0.01, compiled=False)["ramp.y"][-1, 1] == pytest.approx(0.04)
+
+
+def test_parts_know_where_their_forces_bend() -> None:
+    model = sf.Simulation(moving(slide(sf.Stop(1e4, upper=0.1)))).compiled.parts[0]
+    t, u = np.linspace(0.0, 1.0, 5)[:, np.newaxis], np.zeros((5, model.nu))
+
+    def bends(end: float) -> bool:
+        states = {"t": t, "q": end * t, "v": np.full((5, 1), end), "u": u}
+        return model.formula_instants.bend([], np.array(model.record.par_default), states)
+
+    assert bends(0.2) and not bends(0.01)

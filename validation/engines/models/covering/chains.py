@@ -56,7 +56,7 @@ _DRIVES = {
     "early filter": Actuator(control=0.5, activation=Activation("exact filter", 0.375, (0.125,), is_early=True)),
 }
 _FEW = (*tuple(_PASSIVE)[4:], *tuple(_DRIVES)[2:])
-_LINES = {"no tendon": {}, "sum": {}, "path": {}, "heavy path": {"armature": 0.5}}
+_LINES = {"no tendon": 0.0, "sum": 0.0, "path": 0.0, "heavy path": 0.5}
 
 
 class _Family(NamedTuple):
@@ -133,11 +133,11 @@ def _link(draw: np.random.Generator, name: str, parent: int, joints: Sequence[Jo
     beyond = _BEYOND if name[0] == "c" else ""
     first, *rest = joints
     place = own.get("placement", "")
-    first = replace(
-        placed(draw, first),
-        **({"R": IDENTITY} if place in ("at the origin", "shifted") else {}),
-        **({"p": ORIGIN} if place in ("at the origin", "turned") else {}),
-    )
+    first = placed(draw, first)
+    if place in ("at the origin", "shifted"):
+        first = replace(first, R=IDENTITY)
+    if place in ("at the origin", "turned"):
+        first = replace(first, p=ORIGIN)
     all_joints = [first, *rest]
     if own.get("armature") == "armature" + beyond:
         all_joints = [replace(one, armature=(0.75,) * _SPEEDS.get(one.kind, 1)) for one in all_joints]
@@ -177,12 +177,12 @@ def _acted_on(draw: np.random.Generator, tree: Tree, owns: Sequence[Mapping[str,
     tendons: list[Tendon] = []
     actuators: list[Actuator] = []
     for k, own in enumerate(owns):
-        springs = {"stiffness": 3.0, "damping": 0.5, "rest": 0.25} | _LINES[own["line"]]
+        sprung = Tendon("", (), stiffness=3.0, damping=0.5, rest=0.25, armature=_LINES[own["line"]])
         if own["line"] == "sum":
-            tendons.append(Tendon("coupling", (End(f"c{k}"),), (0.75,), **springs))
+            tendons.append(replace(sprung, kind="coupling", ends=(End(f"c{k}"),), coefficients=(0.75,)))
         elif own["line"] != "no tendon":
             points = (End(one, p=shifted(draw, 0.3)) for one in ("", f"b{k}", f"c{k}"))
-            tendons.append(Tendon("path", tuple(points), **springs))
+            tendons.append(replace(sprung, kind="path", ends=tuple(points)))
         drive = _DRIVES[own["drive"]]
         if drive is not None:
             by_tendon = {"tendon": len(tendons) - 1} if own["way"] == "by a tendon" else {"link": f"c{k}"}

@@ -95,7 +95,7 @@ def write(tree: Tree, package: str, roundoff: float, lines: str) -> Source | Uns
         return Unsupported(f"MuJoCo {version('mujoco')} is beside it, of another release", offered=False)
     own = _COMPARED.replace("ROUNDOFF", repr(roundoff))
     # MuJoCo leaves it at zero then, which its documentation does not say.
-    lacks = ("scene_actuator_velocity",) if "no actuation" in tree.features else ()
+    lacks: tuple[str, ...] = ("scene_actuator_velocity",) if "no actuation" in tree.features else ()
     if "RK4" in tree.features:  # Of which of its stages the other fields are, no documentation says.
         lacks = tuple(name for name in FIELDS if name not in _STATE)
     return Source(
