@@ -17,7 +17,7 @@ import symofros as sf
 from reference_models import MODELS
 from symofros.generator import programs
 from symofros.mechanics.dynamics.equations import Equations
-from symofros.mechanics.topology import graph
+from symofros.mechanics.topology import find_problems, graph
 from symofros.runtime.build import build
 from symofros.runtime.calls import binding, extension
 from symofros.studio.editor.jobs.operations import compile_model, simulate
@@ -115,5 +115,5 @@ def test_results_do_not_depend_on_earlier_requests(work: Counter[str], rng: np.r
 
 def test_a_changed_system_is_checked_again() -> None:
     sound = MODELS["puma560"]
-    assert graph.find_problems(sound) == []
-    assert graph.find_problems(replace(sound, inputs=(sf.Input("q1"),)))
+    assert find_problems(sound) == []
+    assert find_problems(replace(sound, inputs=(sf.Input("q1"),)))
