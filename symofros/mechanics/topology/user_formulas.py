@@ -1,7 +1,7 @@
 """Formulas of the user's own over the names of a mechanism: laws, events.
 
 Those of events may use multipliers, wrenches of constraints and reactions of joints by the names of
-`mechanics/dynamics/reactions.py`.
+`mechanics/dynamics/formulas.py`.
 """
 
 from __future__ import annotations

@@ -53,6 +53,14 @@ def transition(step: float, settings: str = "") -> str:
 _AS_BEFORE = "\nif m.na: d.act[:] = states"
 
 
+def _states_after(integrator: str) -> str:
+    """Actuators' states after a step, with an integrator of a model of its own."""
+    return (
+        f"{COPY}n.opt.timestep, n.opt.integrator = {STEP}, mj.mjtIntegrator.{integrator}\n"
+        f"d.qpos[:], d.qvel[:] = q, v\nmj.mj_step(n, d)\nvalue = np.array(d.act){_AS_BEFORE}"
+    )
+
+
 def _step(integrator: str, settings: str = "") -> Way:
     """A step of mj_step, with options of a model of its own."""
     code = f"{COPY}n.opt.timestep, n.opt.integrator = {STEP}, mj.mjtIntegrator.{integrator}"
@@ -149,12 +157,8 @@ if hasattr(d, 'moment_rownnz'):
     mj.mju_sparse2dense(value, entries, d.moment_rownnz, d.moment_rowadr, columns)
 == actuator_forces | actuator_force | {QV}value = d.actuator_force
 == activation_rates | act_dot | {QV}value = d.act_dot
-== activations_after_step | mj_step
-{COPY}n.opt.timestep = {STEP}
-d.qpos[:], d.qvel[:] = q, v
-mj.mj_step(n, d)
-value = np.array(d.act)
-d.act[:] = states
+== activations_after_step | mj_step\n{_states_after("mjINT_EULER")}
+== activations_after_step:RK4 | mj_step, mjINT_RK4\n{_states_after("mjINT_RK4")}
 == actuated_forces | qfrc_actuator | {QV}value = d.qfrc_actuator
 """)
 )

@@ -74,6 +74,9 @@ def write(tree: Tree) -> Source | Unsupported:
     lacks = (*rebuilt.SENSED, *rebuilt.ways(_WAYS)) if own else ()
     if any(one.tendon is not None for one in tree.actuators):  # The sensor is of joints of one speed alone.
         lacks += ("actuated_forces:jointactuatorfrc",)
+    kinds = {one.activation.kind for one in tree.actuators if one.activation}
+    if kinds != {"exact filter"}:  # All others move by stages of the formula.
+        lacks += ("activations_after_step:RK4",)
     return Source(tuple(lines), slots, nq, nv, optional, lacks, spelling=spelling, of_links="bs")
 
 

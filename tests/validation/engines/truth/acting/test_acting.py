@@ -270,6 +270,21 @@ def test_a_state_of_actuators_of_another_rule_is_a_red_cell(name: str, other: st
     assert judge("planted", TREES[name], function, given, right.want).verdict == "wrong"
 
 
+@pytest.mark.parametrize("name", ["actuators with exact filters", "actuators with exact filters faster than a step"])
+def test_runge_kutta_steps_of_exact_filters_are_a_fault_with_its_cause(name: str) -> None:
+    """The stated cause: the filter's factor is taken of the mean rate; Euler's is of the rate at the start."""
+    asked_for = ("activations_after_step", "activations_after_step:RK4")
+    right, wrong = cells(OWN["mujoco"], TREES[name], asked_for)
+    assert (right.verdict, wrong.verdict) == ("right", "wrong")
+    assert [cause.name for cause in stated() if cause.explains(wrong)] == ["exact filters in Runge-Kutta steps"]
+
+
+@pytest.mark.parametrize("name", ["actuators with filters", "actuators with states and without"])
+def test_runge_kutta_steps_of_other_states_are_not_asked(name: str) -> None:
+    (cell,) = cells(OWN["mujoco"], TREES[name], ("activations_after_step:RK4",))
+    assert cell.verdict == "not offered"
+
+
 def test_activations_of_muscles_rise_and_fall_at_their_own_rates() -> None:
     """T0 (1/2 + 3/2 w) as they rise, T1 / (1/2 + 3/2 w) as they fall; controls beyond 1 count as 1."""
     tree = TREES["muscles with activations"]
