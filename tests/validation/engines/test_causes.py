@@ -141,6 +141,30 @@ def test_scenes_have_the_causes_of_their_features(features: tuple[str, ...], fun
     assert next(one.name for one in stated() if one.explains(cell)) == name
 
 
+_SEVERAL = "mass matrix of mimic joints beyond joints of several speeds"
+_OF_FREE, _OF_SERVOS = "what free joints have", "gear of servos at joints"
+
+
+@pytest.mark.parametrize(
+    ("engine", "model", "function", "name"),
+    [
+        ("pinocchio", "chain 78: 0: ball, 0: mimic oblique beyond", "mass_matrix:crba WORLD", _SEVERAL),
+        ("pinocchio", "chain 72: 0: revolute oblique, 0: mimic oblique beyond", "mass_matrix:crba WORLD", None),
+        ("newton", "scene 1: 0: free, 0: site, 0: spring, damper", "scene_qacc", _OF_FREE),
+        ("newton", "scene 1: 0: spring, damper, 0: site, 0: free, 1: hinge", "scene_qacc", _OF_FREE),
+        ("newton", "scene 1: 0: free, 1: hinge, 1: damper", "scene_qacc", None),
+        ("newton", "scene 1: 0: damper drive, 0: springref, 0: free", "scene_qacc", None),
+        ("newton", "scene 1: 0: velocity, 0: hinge, 1: site, 1: motor", "scene_qacc", _OF_SERVOS),
+        ("newton", "scene 1: 2: hinge, 2: position, 2: jointinparent", "scene_qacc", _OF_SERVOS),
+        ("newton", "scene 1: 0: hinge, 0: site, 0: velocity", "scene_qacc", None),
+        ("newton", "scene 1: position sensors, 0: hinge", "scene_qacc", None),
+    ],
+)
+def test_causes_take_no_cell_without_their_features(engine: str, model: str, function: str, name: str | None) -> None:
+    cell = Cell(engine, model, function, "wrong")
+    assert next((one.name for one in stated() if one.explains(cell)), None) == name
+
+
 def test_patterns_of_scenes_are_those_of_some_scene() -> None:
     """In the order in which their names have features."""
     patterns = {one for cause in stated() for one in cause.trees if one.startswith("scene")}
