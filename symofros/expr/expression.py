@@ -76,7 +76,8 @@ def spelled(symbol: str) -> str:
 
 def always_quoted(symbol: str) -> str:
     """The same with backquotes where they would not be needed, too."""
-    return symbol if spelled(symbol) == symbol and symbol.endswith(QUOTE) else quoted(symbol)
+    is_quoted = spelled(symbol) == symbol and symbol.endswith(QUOTE)
+    return symbol if is_quoted or symbol in RESERVED else quoted(symbol)  # `t` is of who is called t, and not time.
 
 
 def needs_quotes(symbols: Iterable[str]) -> list[str]:

@@ -139,3 +139,17 @@ def test_diagrams_act_as_their_models_state() -> None:
     engaged.connect("all.y", "plant.engaged")
     with pytest.raises(sf.DescriptionError, match=r"engaged constraints beside events\n.*events: slips, catches"):
         sf.Simulation(engaged)
+
+
+@pytest.mark.parametrize("name", ["x", "t", "pi"])
+def test_events_of_time_and_constants_are_those_by_argument(name: str) -> None:
+    """Time was written `t`, as what is called t is: any event of time ended runs by "unknown symbol"."""
+    (body,) = slide().bodies
+    assert body.joint is not None
+    bare = replace(slide(gravity=(1, 0, 0)), bodies=(replace(body, joint=replace(body.joint, name=name)),))
+    events = {"there": sf.Event(f"`{name}` + t - pi/4", action={f"d`{name}`": f"t*pi - d`{name}`"})}
+    runs = [
+        sf.simulate(sf.compile(system), t_end=1.0, dt=0.01, events=given)
+        for system, given in ((replace(bare, events=events), None), (bare, events))
+    ]
+    assert len(runs[0].events) == 1 and np.array_equal(runs[0].q, runs[1].q)
