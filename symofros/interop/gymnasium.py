@@ -185,9 +185,6 @@ class MechanismVectorEnv(_VectorEnv):  # type: ignore[misc]
         task: What is asked of the agent.
         num_envs: Number of mechanisms.
         max_steps: Number of steps after which an episode is cut off.
-
-    Attributes:
-        par: Run-time parameters (num_envs, npar) of the episodes.
     """
 
     def __init__(self, task: Task, num_envs: int, max_steps: int = 500) -> None:
@@ -200,8 +197,8 @@ class MechanismVectorEnv(_VectorEnv):  # type: ignore[misc]
         self.observation_space = batch_space(task.observation_space, num_envs)
         self.metadata = {"render_modes": [], "autoreset_mode": gymnasium.vector.AutoresetMode.NEXT_STEP}
         self._least, self._largest = _bounds(task)
-        self._own, self.par = task.parameters is not None, np.tile(np.array(task.model.parameter_values), (num_envs, 1))
-        self._steppers = self._made()
+        par = np.array(task.model.parameter_values)
+        self._steppers = self._made(par if task.parameters is None else np.tile(par, (num_envs, 1)))
         self._state = np.dtype([("q", f"V{8 * task.model.nq}"), ("v", f"V{8 * task.model.nv}")])
         self._steps, self._ended = np.zeros(num_envs, dtype=np.int64), np.zeros(num_envs, dtype=bool)
         self._generators: list[np.random.Generator | None] = [None] * num_envs
@@ -234,19 +231,24 @@ class MechanismVectorEnv(_VectorEnv):  # type: ignore[misc]
         self._ready = None not in self._generators
         return self._observations(), {}
 
-    def _made(self) -> Steppers:
-        par = self.par if self._own else self.par[0]
+    @property
+    def par(self) -> Array:
+        """Run-time parameters (num_envs, npar) of the episodes."""
+        return np.broadcast_to(self._steppers.par, (self.num_envs, self.task.model.npar))
+
+    def _made(self, par: Array) -> Steppers:
         return Steppers(self.task.model, self.num_envs, par=par, **self.task._steps)
 
     def _change(self, chosen: Any, par: Array) -> None:
         """Set the parameters of chosen environments from their rows of par (num_envs, npar); their states stay."""
-        self.par[chosen] = par[chosen]
         before = self._steppers
-        if not self._own:  # They had one set for all.
-            self._own, self._steppers = True, self._made()
+        if before.par.ndim == 1:  # They had one set for all.
+            rows = self.par.copy()
+            rows[chosen] = par[chosen]
+            self._steppers = self._made(rows)
             self._steppers.reset(before.q, before.v, z=before.z)
         else:
-            before.reset(before.q, before.v, par=self.par, which=_mask(chosen, self.num_envs))
+            before.reset(before.q, before.v, par=par, which=_mask(chosen, self.num_envs))
 
     def step(self, actions: Any) -> tuple[Array, Array, Any, Any, dict[str, Any]]:
         """States (num_envs, nq + nv), rewards, failures and cut-offs (num_envs).
@@ -272,12 +274,12 @@ class MechanismVectorEnv(_VectorEnv):  # type: ignore[misc]
 
     def _begin(self, chosen: Any) -> None:
         """New episodes in some environments, given by their numbers."""
-        q, v = self._steppers.q.copy(), self._steppers.v.copy()
+        q, v, par = self._steppers.q.copy(), self._steppers.v.copy(), self.par.copy()
         generators = self._generators
         for k in chosen.tolist():
             generators[k] = generators[k] or gymnasium.utils.seeding.np_random()[0]
-        q[chosen], v[chosen], self.par[chosen] = self.task._begin_each([generators[k] for k in chosen.tolist()])
-        self._steppers.reset(q, v, par=self.par if self._own else None, which=_mask(chosen, self.num_envs))
+        q[chosen], v[chosen], par[chosen] = self.task._begin_each([generators[k] for k in chosen.tolist()])
+        self._steppers.reset(q, v, par=par if self._steppers.par.ndim > 1 else None, which=_mask(chosen, self.num_envs))
         self._steps[chosen] = 0
         # A new array: the one before is part of what was returned by the last step.
         self._ended = self._ended.copy()

@@ -85,7 +85,7 @@ def test_a_linear_regulator_keeps_the_pole_up_and_no_force_lets_it_fall(task: An
         assert fallen.any() != stays
 
 
-def with_masses(task: Any) -> Any:
+def with_masses(task: Any, **more: Any) -> Any:
     """The task on a model whose pole's mass is drawn anew in each episode."""
     system = sf.System(
         "pole",
@@ -95,6 +95,7 @@ def with_masses(task: Any) -> Any:
         ),
         parameters=(sf.Parameter("m", 0.1),),
         inputs=(sf.Input("F"),),
+        **more,
     )
     model = sf.compile(system)
     return sf.interop.gymnasium.Task(
@@ -124,9 +125,10 @@ def test_vector_environments_match_gymnasiums_own(task: Any, seed: Any, masses: 
         assert len(np.unique(ours.par)) == 3
 
 
-def test_episode_parameters_affect_the_motion(task: Any) -> None:
+@pytest.mark.parametrize("drawn", [True, False])
+def test_episode_parameters_affect_the_motion(task: Any, drawn: bool) -> None:
     """By the option or by drawing, for one and for many: the states are those of simulate_batch with them."""
-    made = with_masses(task)
+    made = with_masses(task) if drawn else replace(with_masses(task), parameters=None)
     envs, env = sf.interop.gymnasium.MechanismVectorEnv(made, 2), sf.interop.gymnasium.MechanismEnv(made)
     first = envs.reset(seed=1, options={"par": {"m": [5.0, 0.1]}})[0]
     np.testing.assert_array_equal(envs.par, [[5.0], [0.1]])
@@ -149,6 +151,21 @@ def test_a_mask_resets_selected_environments(task: Any) -> None:
     np.testing.assert_array_equal(state[1], first[1])
     cuts = [envs.step(np.zeros((3, 1)))[3].tolist() for _ in range(4)]
     assert cuts[2] == [True, False, True] and cuts[3] == [False, True, False]
+
+
+def test_what_events_of_others_set_stays_where_one_environment_begins_anew(task: Any) -> None:
+    """Parameters are the present ones; an episode begins with its own."""
+    late_event = sf.Event("t - 0.03", action={"m": "m + 1"}, once=True)
+    made = replace(with_masses(task, events={"late": late_event}), parameters=None)
+    envs = sf.interop.gymnasium.MechanismVectorEnv(made, 2)
+    envs.reset(seed=3)
+    for _ in range(2):
+        envs.step(np.ones((2, 1)))
+    np.testing.assert_allclose(envs.par[:, 0], [1.1, 1.1])
+    envs.reset(options={"reset_mask": np.array([True, False]), "par": {"m": [7.0, 8.0]}})
+    np.testing.assert_allclose(envs.par[:, 0], [7.0, 1.1])
+    envs.reset(options={"reset_mask": np.array([True, False])})
+    np.testing.assert_allclose(envs.par[:, 0], [0.1, 1.1])
 
 
 def test_parameters_of_selected_environments_leave_the_others_in_their_time(task: Any) -> None:
