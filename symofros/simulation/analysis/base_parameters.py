@@ -128,7 +128,8 @@ class BaseParameters:
     def _fitted(self, rows: Array, measured: Array) -> Fit:
         """The fit of weighed rows (n, b) to weighed efforts (n), by columns of unit length."""
         sizes = np.linalg.norm(rows, axis=0)
-        sizes = np.where(sizes > 0.0, sizes, 1.0)
+        least = _ROUNDING * _largest_comparable([self.columns[i] for i in self.independent], sizes)
+        sizes = np.where(sizes > least, sizes, np.inf)
         U, singular, directions = np.linalg.svd(rows / sizes, full_matrices=False)
         shown = singular > _RANK * singular.max(initial=0.0)
         scaled = directions[shown].T @ ((U.T @ measured)[shown] / singular[shown])

@@ -202,6 +202,18 @@ def test_motions_that_do_not_show_parameters_are_noted() -> None:
     )
 
 
+def test_columns_of_rounding_determine_nothing() -> None:
+    """Of a joint held at 90 degrees: cos(pi/2) = 6e-17 gave its first moment 7e11 kg m, and that of z no deviation."""
+    m, t = sf.compile(MODELS["double_pendulum"], FUNCTIONS), np.linspace(0.0, 10.0, 400)[:, None]
+    q = np.hstack([np.full_like(t, np.pi / 2), np.sin(t)])
+    v, a = np.hstack([0.0 * t, np.cos(t)]), np.hstack([0.0 * t, -np.sin(t)])
+    efforts = np.einsum("...ij,...j->...i", m.mass_matrix(q), a) + m.bias(q, v)
+    efforts += np.random.default_rng(0).normal(0.0, 0.01, efforts.shape)
+    found = sf.base_parameters(m).fit(m.regressor(q, v, a), efforts)
+    assert np.isinf(found.deviations).tolist() == [True, False, True] + [False] * 3
+    assert found.values[[0, 2]].tolist() == [0.0, 0.0] and abs(found.values[1]) < 5.0 * found.deviations[1]
+
+
 @pytest.mark.parametrize(
     ("given", "words"),
     [
