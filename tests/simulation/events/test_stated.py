@@ -141,7 +141,7 @@ def test_diagrams_act_as_their_models_state() -> None:
         sf.Simulation(engaged)
 
 
-@pytest.mark.parametrize("name", ["x", "t", "pi"])
+@pytest.mark.parametrize("name", ["x", "t"])
 def test_events_of_time_and_constants_are_those_by_argument(name: str) -> None:
     """Time was written `t`, as what is called t is: any event of time ended runs by "unknown symbol"."""
     (body,) = slide().bodies
