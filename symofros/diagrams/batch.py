@@ -246,10 +246,12 @@ class _Share(NoObserver):
                 task, begin = _begun(self.task, self.members, number)
                 with begun(task.compiled.resolved.wired) as called:
                     ended = run_from(task, begin, called, observer=self)
-            except SymofrosError as error:
+            except tuple(_START_FAILED) as error:
                 self.results.failures[number] = error
-                self.results.status[number] = _START_FAILED.get(type(error), Status.DIVERGED)
+                self.results.status[number] = _START_FAILED[type(error)]
                 continue
+            except SymofrosError as error:  # What no run could be given, as a single one refuses it.
+                raise self.members.naming(number, error) from None
             self.results.take(number, task, ended)
             if ended.recorded.interrupted:
                 stop.set()

@@ -140,10 +140,11 @@ class _Continuous:
                     " blocks in a diagram of their own",
                 )
 
-    def matrices(self, point: OperatingPoint) -> tuple[list[Array], list[Array], Array]:
-        """A, B, C, D of changes along all q and of v; a basis of each part's changes; the accelerations (nv)."""
+    def motion(self, point: OperatingPoint) -> tuple[Array, list[Array], Array]:
+        """Derivatives of (a; lam) by q, v, the inlets and t; a basis of each part's changes; the accelerations (nv)."""
         layout, nv, nc = self.resolved.layout, len(point.v), len(point.lam)
-        by_q, by_v, by_u = (np.zeros((nv + nc, n)) for n in (nv, nv, len(point.varied)))
+        by = {"by_q": nv, "by_v": nv, "by_u": len(point.varied), "by_t": 1}
+        slopes_of = {name: np.zeros((nv + nc, n)) for name, n in by.items()}
         a, bases = point.a.copy(), list[Array]()
         for part, slopes in zip(layout.parts, self._parts, strict=True):
             found = _along(self.resolved, slopes.at(point.of(part), point.par), point.q, part)
@@ -153,8 +154,16 @@ class _Continuous:
                 found, allowed = self._on_constraints(part, found)
             else:
                 a[part.v] = found["values"]
-            by_q[rows, part.v], by_v[rows, part.v], by_u[rows] = found["by_q"], found["by_v"], found["by_u"]
+            for name, into in slopes_of.items():
+                columns = part.v if name in ("by_q", "by_v") else slice(None)
+                into[rows, columns] = found[name]
             bases.append(allowed)
+        return np.hstack(list(slopes_of.values())), bases, a
+
+    def matrices(self, point: OperatingPoint) -> tuple[list[Array], list[Array], Array]:
+        """A, B, C, D of changes along all q and of v; a basis of each part's changes; the accelerations (nv)."""
+        layout, nv, (J, bases, a) = self.resolved.layout, len(point.v), self.motion(point)
+        by_q, by_v, by_u, _ = np.split(J, [nv, 2 * nv, 2 * nv + len(point.varied)], axis=1)
         A, B = state_matrices(layout.segments, (by_q, by_v, by_u), point.v)
         y = _along(self.resolved, self._outputs.at(point.named, point.par), point.q, layout.whole)
         through = np.hstack([y["by_a"], y["by_lam"]])  # By the chain rule (16).
@@ -165,7 +174,7 @@ class _Continuous:
         """Derivatives of accelerations and multipliers from those of the residuals (15), and what changes there are."""
         nv, nc, layout = part.nv, part.nc, self.resolved.layout
         measures, solved = layout.measures_of(part), dict[str, Array]()
-        for name in ("by_q", "by_v", "by_u"):
+        for name in ("by_q", "by_v", "by_u", "by_t"):
             R = found[name]
             a, lam, _ = solve(found["M"], -R[:nv], found["G"], -R[nv : nv + nc], measures)
             solved[name] = np.vstack([a, lam])
@@ -228,6 +237,10 @@ class _Sampled:
         self._next = slopes_of_memory(resolved, self.due, self.point.varied)
         self._outputs = slopes_of_outputs(resolved, sources, self.point.varied, self.due)
 
+    def motion(self, point: OperatingPoint) -> tuple[Array, list[Array], Array]:
+        """Of no accelerations."""
+        return np.zeros((0, len(point.varied) + 1)), [], point.a
+
     def matrices(self, point: OperatingPoint) -> tuple[list[Array], list[Array], Array]:
         """A, B, C, D; nothing; what is remembered next."""
         m = len(self._memory)
@@ -276,12 +289,14 @@ def _refuse_switches(linear: _Continuous | _Sampled) -> None:
     resolved, point = linear.resolved, linear.point
     slopes = slopes_of_switches(resolved, point.varied, linear.due)
     found = _along(resolved, slopes.at(point.named, point.par), point.q, resolved.layout.whole)
-    gradients = np.hstack([found["by_q"], found["by_v"], found["by_u"], found["by_t"]])
+    J, _, _ = linear.motion(point)
+    gradients = np.hstack([found[name] for name in ("by_q", "by_v", "by_u", "by_t")])
+    gradients += np.hstack([found["by_a"], found["by_lam"]]) @ J
     sizes = np.linalg.norm(gradients, axis=1)
     for i in np.flatnonzero((np.abs(found["values"]) <= _NEAR * sizes) & (sizes > 0.0)):
         block, _, crossing = slopes.names[i].partition(".")
         change = 2.0 * _NEAR * gradients[i] / sizes[i]
-        if not crossing and _agree(*(linear.matrices(point.moved(resolved, s * change))[0] for s in (-1.0, 1.0))):
+        if not crossing and _agree(*(linear.matrices(point.moved(resolved, s * change, J))[0] for s in (-1.0, 1.0))):
             continue
         raise _no_model(
             resolved,

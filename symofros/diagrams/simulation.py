@@ -8,6 +8,8 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Any
 
+import numpy as np
+
 from symofros.base.arguments import checked
 from symofros.base.options import Options
 from symofros.diagrams.batch import DiagramRuns, run_batch
@@ -115,10 +117,13 @@ class Simulation:
 
         Raises:
             ShapeError: A value does not fit, or batch dimensions do not broadcast.
+            DescriptionError: Nothing but what is given would say the shape of an inlet.
             SymofrosError: As `run_compiled`; or a block is called outside of C, as blocks of Python's are.
         """
         chosen = self.diagram.simulation.keywords_with(settings)
         one = representative(inputs)
+        if one and inputs and any(isinstance(one[name], float) and not np.isscalar(x) for name, x in inputs.items()):
+            self.resolved  # noqa: B018 - numbers of many runs do not say the shape of an inlet
         return run_batch(
             self.compiled_with(one),
             _end(self.diagram, t_end),

@@ -18,6 +18,7 @@ from tests.diagrams.parts import Ball, Lag, Spoken, arm, moving
 
 PENDULUM = sf.load(Path(__file__).parents[2] / "reference_models" / "rigid" / "double_pendulum.yaml")
 FOUR_BAR = sf.load(Path(__file__).parents[2] / "reference_models" / "closed" / "four_bar.yaml")
+TOP = sf.load(Path(__file__).parents[2] / "reference_models" / "rigid" / "heavy_top.yaml")
 FOUR_PARTS = r"[\s\S]*found:[\s\S]*rule:[\s\S]*remedy:"
 N = 5
 
@@ -109,8 +110,8 @@ def test_batch_dimensions_broadcast() -> None:
     assert np.array_equal(runs[2, 1]["lag.y"], runs["lag.y"][2, 1])
     single = simulation.run_batch(0.1, inputs={"goal": 0.0, "one": 1.0}, output=0.1)
     assert single.shape == () and single.ok
-    none = simulation.run_batch(0.1, inputs={"goal": 0.0, "one": np.zeros(0)}, output=0.1)
-    assert len(none) == 0
+    for none in ({"goal": 0.0, "one": np.zeros(0)}, {"goal": sf.Signal([0.0, 1.0], np.zeros((0, 2, 2))), "one": 0.0}):
+        assert len(simulation.run_batch(0.1, inputs=none, output=0.1)) == 0
 
 
 def test_a_run_that_ends_before_leaves_the_others_alone() -> None:
@@ -170,11 +171,34 @@ def test_an_interrupt_keeps_the_finished_part(monkeypatch: pytest.MonkeyPatch) -
         ({"starts": {"plant.q1": np.zeros(3), "plant.q2": np.zeros(2)}}, sf.ShapeError, "do not broadcast"),
         ({"realtime": True}, sf.SymofrosError, "an option of single runs"),
         ({"threads": 0}, sf.SymofrosError, "no thread"),
+        ({"method": "rodas4"}, sf.SymofrosError, "method 'rodas4'"),
+        ({"rtol": 1e-3, "threads": 2, "starts": {"plant.q1": np.zeros(3)}}, sf.SymofrosError, "adaptive steps, 'rtol'"),
     ],
 )
 def test_invalid_arguments_are_refused(given: dict[str, Any], error: type[Exception], message: str) -> None:
     with pytest.raises(error, match=message + FOUR_PARTS):
         sf.Simulation(arm(PENDULUM)).run_batch(0.01, **given)
+
+
+def test_values_that_a_single_run_refuses_are_refused_with_the_run() -> None:
+    with pytest.raises(sf.SymofrosError, match=r"run \[1\]: signal: not samples over time" + FOUR_PARTS):
+        goals = np.array([[0.0, 0.0], [np.nan, 0.0]])
+        sf.Simulation(lagging()).run_batch(0.1, inputs={"goal": goals, "one": 0.0})
+    with pytest.raises(sf.ShapeError, match=r"run \[1\]: model 'heavy_top': start of 'plant'" + FOUR_PARTS):
+        q = sf.compile(TOP).neutral()
+        sf.Simulation(moving(TOP)).run_batch(0.1, starts={"plant.q": [q, 2.0 * q]})
+
+
+def test_numbers_at_an_inlet_whose_shape_nothing_says_are_refused() -> None:
+    """A single run takes its shape from what is given, which a batch cannot."""
+    diagram = sf.Diagram("open")
+    diagram.add_inlet("e", "sum.u")
+    diagram.add(blocks.Integrator(name="sum"))
+    simulation = sf.Simulation(diagram)
+    assert simulation.run(0.1, inputs={"e": [1.0, 2.0]}, output=0.1)["sum.y"].shape == (2, 2)
+    with pytest.raises(sf.DescriptionError, match="inlet 'e'[\\s\\S]*its shape is unknown"):
+        simulation.run_batch(0.1, inputs={"e": [1.0, 2.0]}, output=0.1)
+    assert simulation.run_batch(0.1, inputs={"e": 1.0}, output=0.1)["sum.y"].shape == (2,)
 
 
 def test_blocks_of_python_are_refused_by_name() -> None:

@@ -208,6 +208,20 @@ def test_a_limit_has_a_slope_on_each_side_and_none_at_its_edge(at: float, slope:
     assert found.A[0, 0] == found.C[0, 0] == slope
 
 
+@pytest.mark.parametrize("of", ["plant.a", "plant.lam"])
+def test_a_limit_of_what_constraints_leave_has_none_at_its_edge(of: str) -> None:
+    """At rest accelerations are zero, and forces of constraints what they are there."""
+    diagram = plant(FOUR_BAR, {}, of)
+    q = sf.equilibrium(sf.compile(FOUR_BAR), [-1.5, 1.5, -1.5]).q
+    edge = sf.Simulation(diagram).run(1e-3, inputs={"u": 0.0}, starts={"plant.q": q})[of][0]
+    diagram.add(blocks.Saturation(name="f", low=edge, high=edge + 9.0), u=of)
+    diagram.outlets["y"] = "f.y"
+    with pytest.raises(sf.SymofrosError, match=r"no linear model[\s\S]*block 'f' switches"):
+        sf.Simulation(diagram).state_space(starts={"plant.q": q})
+    found = sf.Simulation(diagram).state_space(starts={"plant.q": q}, inputs={"u": 1e-3}, outputs=[of])
+    assert np.isfinite(found.C).all()
+
+
 def test_a_kink_without_a_jump_of_the_slope_is_smooth() -> None:
     simulation = sf.Simulation(scalar(blocks.Formula(name="f", formulas={"y": "-abs(u)*u"})))
     assert simulation.state_space().A[0, 0] == 0.0

@@ -15,7 +15,7 @@ from symofros.diagrams.inlets import VALUE, Inlet
 from symofros.diagrams.program.compiled import CompiledDiagram
 from symofros.diagrams.run.starts import Start
 from symofros.diagrams.run.values import parameter_place, parameter_values
-from symofros.errors import ParameterError, Problem, ShapeError
+from symofros.errors import ParameterError, Problem, ShapeError, SymofrosError
 from symofros.simulation.inputs import Signal
 
 
@@ -27,7 +27,8 @@ def representative(inputs: Mapping[str, Any] | None) -> dict[str, Any] | None:
     for name, value in inputs.items():
         text = isinstance(value, str) or (isinstance(value, (list, tuple)) and any(isinstance(v, str) for v in value))
         if isinstance(value, Signal):
-            one[name] = replace(value, values=value.values[(0,) * (value.values.ndim - 2)])
+            several = value.values.ndim > 2
+            one[name] = replace(value, values=np.zeros(value.values.shape[-2:])) if several else value
         else:
             one[name] = value if text or value is None else 0.0
     return one
@@ -173,8 +174,14 @@ class Members:
         try:
             return parameter_values(self.compiled.resolved, given)
         except ParameterError as error:
-            index = list(map(int, np.unravel_index(number, self.shape))) if self.shape else []
-            raise ParameterError([replace(one, what=f"run {index}: {one.what}") for one in error.problems]) from None
+            raise self.naming(number, error) from None
+
+    def naming(self, number: int, error: SymofrosError) -> SymofrosError:
+        """An error that says of which run it is, where there are several."""
+        if not self.shape:
+            return error
+        index = list(map(int, np.unravel_index(number, self.shape)))
+        return type(error)([replace(one, what=f"run {index}: {one.what}") for one in error.problems])
 
     @cached_property
     def _starts(self) -> dict[str, Array]:

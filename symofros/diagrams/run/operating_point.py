@@ -106,9 +106,10 @@ class OperatingPoint:
         a, lam = self.a[part.v], self.lam[part.conditions]
         return {**self.named, "q": self.q[part.q], "v": self.v[part.v], "a": a, "lam": lam}
 
-    def moved(self, resolved: Resolved, change: Array) -> OperatingPoint:
-        """Another point nearby, by changes along q, of v, of what varies of u, and of t, one after the other."""
+    def moved(self, resolved: Resolved, change: Array, J: Array) -> OperatingPoint:
+        """Another point nearby, by changes along q, of v, of what varies of u, and of t; (a; lam) by J of these."""
+        a, lam = np.split(np.append(self.a, self.lam) + J @ change, [len(self.a)])
         nv, u = len(self.v), self.u.copy()
         u[list(self.varied)] += change[2 * nv : -1]
         q = retract(resolved.layout.segments, self.q, change[:nv])
-        return replace(self, t=self.t + float(change[-1]), q=q, v=self.v + change[nv : 2 * nv], u=u)
+        return replace(self, t=self.t + float(change[-1]), q=q, v=self.v + change[nv : 2 * nv], u=u, a=a, lam=lam)
