@@ -25,15 +25,18 @@ TREE = {
     "validation/reporting/html.py": "",
     "validation/timing/race.py": "from ..oracle import digits\nfrom .report import x\n",
     "validation/timing/report.py": "from ..pareto import front\n",
+    "validation/timing/figures.py": "from ..stability import maps\n",
     "validation/oracle/digits.py": "",
     "validation/pareto/front.py": "",
+    "validation/stability/maps.py": "",
     "validation/native/loop.c": "",
     "tests/test_a.py": "",
     "README.md": "",
 }
 COUNTED = """
     symofros/native/a.c reference_models/arm.py validation/checking.py validation/mechanics/parts.py
-    validation/timing/race.py validation/oracle/digits.py validation/native/loop.c
+    validation/timing/race.py validation/timing/report.py validation/oracle/digits.py validation/pareto/front.py
+    validation/native/loop.c
 """.split()
 
 
@@ -121,6 +124,8 @@ def test_every_report_names_the_folder_that_measures_it(name: str) -> None:
     assert any(one.startswith(f"validation/{TOPICS[name].home}/") for one in names), TOPICS[name].home
     assert {"symofros/compiler.py", "symofros/native/model/symofros_model.h"} <= names
     assert {"validation/adapters/closed.py", "reference_models/__init__.py"} <= names
+    measuring = f"validation/{TOPICS[name].home}/report.py"
+    assert measuring in names or not (evidence.HARNESS.parent / measuring).is_file()
     is_of_editor = any(one.startswith("symofros/studio/editor/") for one in names)
     assert is_of_editor == (name == "studio") and not any(one.startswith("validation/reporting/") for one in names)
 
