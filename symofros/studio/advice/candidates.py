@@ -9,6 +9,7 @@ from typing import Any, Literal
 
 import numpy as np
 
+from symofros.base.names import name_of
 from symofros.description import DIRECTIONS, STATIONS, Beam, Direction, Joint, Spring, System, as_value
 from symofros.studio.advice import estimators
 from symofros.studio.advice.loads import BeamLoads, Observed
@@ -89,8 +90,9 @@ def fewer_functions(loads: BeamLoads, current: Beam) -> Iterator[Reduction]:
 
 
 def constants(system: System, keep: tuple[str, ...]) -> Reduction:
-    """Parameters that the scene does not vary, hard-coded: exact, and what zeros multiply vanishes."""
-    free = [parameter for parameter in system.parameters if not parameter.constant and parameter.name not in keep]
+    """Parameters that neither scene nor events vary, hard-coded: exact, and what zeros multiply vanishes."""
+    varied = {*keep, *(name_of(to) for event in system.events.values() for to in event.action or ())}
+    free = [parameter for parameter in system.parameters if not parameter.constant and parameter.name not in varied]
     zeros = [parameter.name for parameter in free if parameter.value == 0.0]
     names = {parameter.name for parameter in free}
 

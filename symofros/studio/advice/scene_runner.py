@@ -183,6 +183,8 @@ class SceneRunner:
             if not run.outcome.ok:
                 beyond = largest_bending(run.bendings) if run.outcome.kind == "beyond theory" else None
                 return Trial(None, f"{run.outcome.kind} at t = {run.outcome.t:.3g} s: {run.outcome.reason}", {}, beyond)
+            if run.t[-1] < self.scene.t_end:  # Runs that end elsewhere are not compared.
+                return Trial(None, f"{run.outcome.kind} at t = {run.outcome.t:.3g} s: {run.outcome.reason}", {})
             return Trial(run, "", {output.name: output.values(run) for output in self.scene.outputs})
         except AssemblyError as error:
             return Trial(None, str(error).splitlines()[0], {})

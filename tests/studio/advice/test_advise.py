@@ -261,3 +261,17 @@ def test_a_beam_beyond_its_theory_whose_coordinates_have_starts_is_refused() -> 
     limp = sf.System("limp", (beam,), gravity=(0, -60, 0))
     with pytest.raises(sf.BeamTheoryError, match=r"(?s)'blade' bends by .* divide it into \d+ beams .* theory: strain"):
         sf.advise(limp, replace(scene, start={"blade.bend_y[0]": 1e-3}))
+
+
+def test_events_of_the_model_end_scenes_in_words_and_keep_their_parameters() -> None:
+    """Runs to an event of other steps are of other lengths; a parameter that an action sets is no constant."""
+    scene = sf.Scene(2.0, (sf.Output("angle", "coordinate", "q", absolute=1e-4),), start={"q": 1.0})
+    ends, sets = (
+        replace(MODELS["pendulum"], events={"low": sf.Event("q - 0.3", "falling", **more)})
+        for more in ({"terminal": True}, {"action": {"m": 2}})
+    )
+    with pytest.raises(sf.SymofrosError, match="event at t = 0.316 s: event 'low'"):
+        sf.advise(ends, scene)
+    advice = sf.advise(sets, scene)
+    assert advice.choice("constants", "parameters").verdict == "taken"
+    assert [one.name for one in advice.system.parameters if not one.constant] == ["m"]
