@@ -78,3 +78,16 @@ def test_files_named_in_the_look_ups_exist() -> None:
     assert len(paths) > 15
     for path in paths:
         assert (ROOT / path).exists(), path
+
+
+def test_modules_named_in_texts_of_the_code_exist() -> None:
+    """By a path, in docstrings, comments and notes: `mechanics/dynamics/formulas.py`."""
+    code = [path for package in ("symofros", "validation") for path in (ROOT / package).rglob("*.py")]
+    there = {"/".join(path.parts[first:]) for path in code for first in range(len(ROOT.parts), len(path.parts))}
+    named = {
+        (path.name, name)
+        for path in (*code, ROOT / "symofros/NOTATION.md")
+        for name in re.findall(r"`((?:\w+/)+\w+\.py)\b", path.read_text(encoding="utf-8"))
+    }
+    assert len(named) > 40
+    assert {(path, name) for path, name in named if name not in there and not (ROOT / name).exists()} == set()

@@ -56,7 +56,6 @@ class CellItem(pytest.Item):
         return str(excinfo.value) if isinstance(excinfo.value, CellFailure) else super().repr_failure(excinfo, style)
 
 
-# Models of the smoke tier, where none is named: each kind of mechanism once, all of them small.
 # Functions of the smoke tier: what everything else of an engine rests on.
 _BASIC = ("mass_matrix", "bias", "gravity", "inverse_dynamics", "forward_dynamics", "kinetic_energy", "link_poses")
 
@@ -127,6 +126,7 @@ def finish() -> None:
         _worker().close()
 
 
+# Models of the smoke tier, where none is named: each kind of mechanism once, all of them small.
 SMOKE = ("double_pendulum", "heavy_top", "cart_pole", "four_bar", "rolling_disc", "flexible_pendulum")
 
 

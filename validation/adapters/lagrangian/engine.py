@@ -106,7 +106,7 @@ class LagrangianEngine(SolvedEngine):
         return np.asarray(rate - self.frame_jacobian(states) @ self._speeds_turning(states)[:, None])
 
     def _speeds_turning(self, states: States) -> Array:
-        """The rate of T in v = T e' (N, nv, nv), where speeds are no rates (`motion`)."""
+        """The rate of T in v = T e' (N, nv, nv), where speeds are no rates (`tree`, (1))."""
         turning = np.zeros((*states.v.shape, states.v.shape[1]))
         for mover in self.stated.assembly.movers:
             if mover.has_quaternion and not mover.joint.prescribed:

@@ -1,8 +1,14 @@
 """Lagrange's equations of a tree of rigid bodies and beams, by automatic differentiation (CasADi).
 
 Kinetic and potential energy are written down; momenta, M and h are derivatives that CasADi takes, and nothing is
-shared with the generator. Where speeds are not rates of coordinates, derivatives are those by a displacement of the
-state (`motion`).
+shared with the generator. Where speeds are not rates of coordinates (ball and free joints), derivatives are those by a
+displacement e of the state along the speeds,
+
+    turn by the quaternion (e/2, sqrt(1 - e.e/4)),   shift by x + e x x / 2   (x: the linear part)            (1)
+
+which follows the motion at constant speeds to second order. Lagrange's equations take no more than second derivatives,
+so at e = 0 those in e are those in our speeds: e' = v, e'' = v'. Away from e = 0, v = T(e) e' with T' u = -1/2 v x u,
+the cross product of motions, which the rates of Jacobians need.
 """
 
 from __future__ import annotations
@@ -149,7 +155,7 @@ class Terms(NamedTuple):
 class Symbols:
     """What the energies are functions of.
 
-    Prescribed joints have s, ds, dds; e and es are the displacements of `motion`.
+    Prescribed joints have s, ds, dds; e and es are displacements (1).
 
     Attributes:
         seen: The speeds again, as formulas of forces see them: virtual power does not differentiate those.
