@@ -27,8 +27,8 @@ from symofros.runtime.methods.linear import state_matrices
 from symofros.simulation.analysis.state_space import StateSpace, allowed_changes
 
 # A kink or crossing nearer than this, in units of states and inlets, is at the state; derivatives on both sides of it
-# that differ by this share are two linear models.
-_NEAR, _DIFFERENT = 1e-8, 1e-5
+# that differ by this share are two linear models; so are values that jump by this share of the largest.
+_NEAR, _DIFFERENT, _JUMP = 1e-8, 1e-5, 1e-7
 
 
 @dataclass(frozen=True)
@@ -141,19 +141,19 @@ class _Continuous:
                 )
 
     def motion(self, point: OperatingPoint) -> tuple[Array, list[Array], Array]:
-        """Derivatives of (a; lam) by q, v, the inlets and t; a basis of each part's changes; the accelerations (nv)."""
+        """Derivatives of (a; lam) by q, v, the inlets and t; a basis of each part's changes; (a; lam) (nv + nc)."""
         layout, nv, nc = self.resolved.layout, len(point.v), len(point.lam)
         by = {"by_q": nv, "by_v": nv, "by_u": len(point.varied), "by_t": 1}
         slopes_of = {name: np.zeros((nv + nc, n)) for name, n in by.items()}
-        a, bases = point.a.copy(), list[Array]()
+        a, bases = np.append(point.a, point.lam), list[Array]()
         for part, slopes in zip(layout.parts, self._parts, strict=True):
             found = _along(self.resolved, slopes.at(point.of(part), point.par), point.q, part)
             rows, allowed = np.arange(part.v.start, part.v.stop), np.eye(2 * part.nv)
             if part.nc:
                 rows = np.append(rows, nv + np.arange(part.conditions.start, part.conditions.stop))
                 found, allowed = self._on_constraints(part, found)
-            else:
-                a[part.v] = found["values"]
+                found["values"] += a[rows]
+            a[rows] = found["values"]
             for name, into in slopes_of.items():
                 columns = part.v if name in ("by_q", "by_v") else slice(None)
                 into[rows, columns] = found[name]
@@ -161,23 +161,24 @@ class _Continuous:
         return np.hstack(list(slopes_of.values())), bases, a
 
     def matrices(self, point: OperatingPoint) -> tuple[list[Array], list[Array], Array]:
-        """A, B, C, D of changes along all q and of v; a basis of each part's changes; the accelerations (nv)."""
+        """A, B, C, D of changes along all q and of v; a basis of each part's changes; (a; lam; y)."""
         layout, nv, (J, bases, a) = self.resolved.layout, len(point.v), self.motion(point)
         by_q, by_v, by_u, _ = np.split(J, [nv, 2 * nv, 2 * nv + len(point.varied)], axis=1)
         A, B = state_matrices(layout.segments, (by_q, by_v, by_u), point.v)
         y = _along(self.resolved, self._outputs.at(point.named, point.par), point.q, layout.whole)
         through = np.hstack([y["by_a"], y["by_lam"]])  # By the chain rule (16).
         C = np.hstack([y["by_q"], y["by_v"]]) + through @ np.hstack([by_q, by_v])
-        return [A, B, C, y["by_u"] + through @ by_u], bases, a
+        values = y["values"] + through @ (a - np.append(point.a, point.lam)) if point.lam.size else y["values"]
+        return [A, B, C, y["by_u"] + through @ by_u], bases, np.append(a, values)
 
     def _on_constraints(self, part: Part, found: dict[str, Array]) -> tuple[dict[str, Array], Array]:
-        """Derivatives of accelerations and multipliers from those of the residuals (15), and what changes there are."""
+        """Derivatives of (a; lam) from those of the residuals (15), what residuals add to them; what may change."""
         nv, nc, layout = part.nv, part.nc, self.resolved.layout
         measures, solved = layout.measures_of(part), dict[str, Array]()
-        for name in ("by_q", "by_v", "by_u", "by_t"):
+        for name in ("by_q", "by_v", "by_u", "by_t", "values"):
             R = found[name]
             a, lam, _ = solve(found["M"], -R[:nv], found["G"], -R[nv : nv + nc], measures)
-            solved[name] = np.vstack([a, lam])
+            solved[name] = np.concatenate([a, lam])
         on_positions = np.flatnonzero(found["binds"]).tolist()
         rates = found["by_q"][nv + nc :]
         return solved, allowed_changes(found["G"], rates, on_positions, measures, layout.moving[part.v])
@@ -185,7 +186,7 @@ class _Continuous:
     def state_space(self) -> DiagramStateSpace:
         """The linear model at the point."""
         point, layout, nv = self.point, self.resolved.layout, len(self.point.v)
-        (A, B, C, D), bases, a = self.matrices(point)
+        (A, B, C, D), bases, values = self.matrices(point)
         kept = np.append(layout.moving, np.ones(nv, dtype=np.bool_))  # Nothing depends on idle coordinates.
         S = np.eye(2 * nv)[:, kept]
         if len(point.lam):
@@ -196,7 +197,7 @@ class _Continuous:
                 S = np.hstack([S, columns])
             S = S[:, (S[kept] != 0.0).any(axis=0)]
         names = (*_coordinate_names(self.resolved), *layout.speed_labels)
-        rates = S.T @ np.append(point.v, a)
+        rates = S.T @ np.append(point.v, values[:nv])
         stated = tuple(np.array(names, dtype=object)[kept]), _names_of(self.resolved, point.varied), self._outputs.names
         return DiagramStateSpace(S.T @ A @ S, S.T @ B, C @ S, D, S[kept], *stated, rates)
 
@@ -242,18 +243,18 @@ class _Sampled:
         return np.zeros((0, len(point.varied) + 1)), [], point.a
 
     def matrices(self, point: OperatingPoint) -> tuple[list[Array], list[Array], Array]:
-        """A, B, C, D; nothing; what is remembered next."""
+        """A, B, C, D; nothing; what is remembered next, and y."""
         m = len(self._memory)
         after, y = self._next.at(point.named, point.par), self._outputs.at(point.named, point.par)
         A, B = np.split(after["by_u"], [m], axis=1)
         C, D = np.split(y["by_u"], [m], axis=1)
-        return [A, B, C, D], [], after["values"]
+        return [A, B, C, D], [], np.append(after["values"], y["values"])
 
     def state_space(self) -> DiagramStateSpace:
         """The linear model at the point."""
         (A, B, C, D), _, after = self.matrices(self.point)
         memory, inlets = (_names_of(self.resolved, entries) for entries in (self._memory, self._inlets))
-        rates = after - self.point.u[list(self._memory)]
+        rates = after[: len(memory)] - self.point.u[list(self._memory)]
         return DiagramStateSpace(
             A, B, C, D, np.eye(len(rates)), memory, inlets, self._outputs.names, rates, self._period
         )
@@ -296,7 +297,8 @@ def _refuse_switches(linear: _Continuous | _Sampled) -> None:
     for i in np.flatnonzero((np.abs(found["values"]) <= _NEAR * sizes) & (sizes > 0.0)):
         block, _, crossing = slopes.names[i].partition(".")
         change = 2.0 * _NEAR * gradients[i] / sizes[i]
-        if not crossing and _agree(*(linear.matrices(point.moved(resolved, s * change, J))[0] for s in (-1.0, 1.0))):
+        beside = [linear.matrices(point.moved(resolved, s * change, J)) for s in (-2.0, -1.0, 1.0, 2.0)]
+        if not crossing and _agree(beside[1][0], beside[2][0]) and not _jump([values for *_, values in beside]):
             continue
         raise _no_model(
             resolved,
@@ -312,3 +314,9 @@ def _agree(before: Sequence[Array], after: Sequence[Array]) -> bool:
         bool((np.abs(a - b) <= _DIFFERENT * max(1.0, np.abs(a).max(initial=0.0))).all())
         for a, b in zip(before, after, strict=True)
     )
+
+
+def _jump(values: Sequence[Array]) -> bool:
+    """Whether values at -2, -1, 1 and 2 times a change differ by what is not proportional to it."""
+    jumps = 2.0 * (values[2] - values[1]) - (values[3] - values[0])
+    return not bool((np.abs(jumps) <= _JUMP * max(1.0, np.abs(values).max(initial=0.0))).all())

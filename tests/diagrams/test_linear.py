@@ -227,6 +227,31 @@ def test_a_kink_without_a_jump_of_the_slope_is_smooth() -> None:
     assert simulation.state_space().A[0, 0] == 0.0
 
 
+@pytest.mark.parametrize("period", [None, 0.1])
+def test_a_jump_between_equal_slopes_is_no_linear_model(period: float | None) -> None:
+    diagram = sf.Diagram("relay")
+    diagram.add_inlet("e", "f.e", shape=())
+    diagram.add(blocks.Formula(name="f", formulas="3*e - 1e-3*sign(e)", period=period))
+    diagram.outlets["y"] = "f.y"
+    with pytest.raises(sf.SymofrosError, match=r"no linear model[\s\S]*block 'f' switches"):
+        sf.Simulation(diagram).state_space()
+    assert sf.Simulation(diagram).state_space(inputs={"e": 1e-6}).D[0, 0] == 3.0
+
+
+@pytest.mark.parametrize("model", [PENDULUM, FOUR_BAR], ids=["tree", "loop"])
+def test_dry_friction_at_rest_is_no_linear_model(model: sf.System) -> None:
+    size = len(sf.compile(model).names.v)
+    diagram, starts = (
+        plant(model, {}, "plant.q", u="f.y"),
+        {"plant.q": sf.equilibrium(sf.compile(model), [-1.5, 1.5, -1.5][:size]).q},
+    )
+    diagram.add(
+        blocks.Formula(name="f", formulas={"y": ["-0.1*sign(v[0])"] * len(sf.compile(model).names.u)}), v="plant.v"
+    )
+    with pytest.raises(sf.SymofrosError, match=r"no linear model[\s\S]*block 'f' switches"):
+        sf.Simulation(diagram).state_space(starts=starts)
+
+
 def test_a_limited_integrator_at_its_limit_is_refused() -> None:
     diagram = sf.Diagram("limited")
     diagram.add_inlet("w", "x.u", shape=())
