@@ -112,7 +112,7 @@ class BaseParameters:
             raise _does_not_fit("efforts", measured.shape, str(Y.shape[:-1]))
         spread = np.ones(Y.shape[-2]) if noise is None else np.asarray(noise, dtype=np.float64)
         if spread.shape != Y.shape[-2:-1]:
-            raise _does_not_fit("noise", spread.shape, str(Y.shape[-2:-1]))
+            raise _does_not_fit("noise", spread.shape, str(Y.shape[-2:-1]), "one number a row of the regressor")
         if not all(np.all(np.isfinite(x)) for x in (Y, measured, spread)):
             raise ShapeError(Problem("fit: entries are not finite", "nan or inf", "numbers are finite", "drop them"))
         if np.any(spread <= 0.0):
@@ -144,21 +144,22 @@ class BaseParameters:
 
     def _excitation_notes(self, directions: Array, singular: Array, shown: npt.NDArray[np.bool_]) -> tuple[str, ...]:
         """What the motion does not tell apart, by the directions of the columns at unit length (b, b)."""
+        notes = list[str]()
         if not shown.all():
             hidden = np.abs(directions[~shown]).max(axis=0) > np.sqrt(_RANK)
-            return (
+            notes.append(
                 f"the motion determines {np.count_nonzero(shown)} of {len(shown)} base parameters, and not"
-                f" {self._listed(hidden)}: their values are those of least size; move the joints that show them",
+                f" {self._listed(hidden)}: their values are those of least size; move the joints that show them"
             )
-        condition = singular[0] / singular[-1]
-        if condition <= _CONDITION:
-            return ()
-        weakest = np.abs(directions[-1])
-        return (
-            f"the motion tells base parameters poorly apart: {self._listed(weakest > _PART * weakest.max())} have"
-            f" {1.0 / singular[-1]:.3g} times the deviation of one that is fitted alone (condition {condition:.3g} of"
-            " columns of unit length); larger or faster motions, of more frequencies, or fewer parameters",
-        )
+        seen = singular[shown]
+        if len(seen) and (condition := seen[0] / seen[-1]) > _CONDITION:
+            weakest = np.abs(directions[shown][-1])
+            notes.append(
+                f"the motion tells base parameters poorly apart: {self._listed(weakest > _PART * weakest.max())} have"
+                f" {1.0 / seen[-1]:.3g} times the deviation of one that is fitted alone (condition {condition:.3g} of"
+                " columns of unit length); larger or faster motions, of more frequencies, or fewer parameters"
+            )
+        return tuple(notes)
 
     def _listed(self, chosen: npt.NDArray[np.bool_]) -> str:
         """The first parameters of some combinations, eight at most."""
@@ -265,8 +266,10 @@ def _motion(model: Model, rng: np.random.Generator) -> _Motion:
     raise AssertionError("unreachable: the last guess returns or raises")
 
 
-def _does_not_fit(what: str, found: tuple[int, ...], wanted: str) -> ShapeError:
-    return ShapeError(Problem(f"fit: {what} does not fit", str(found), wanted, "of the same motion and joint_terms"))
+def _does_not_fit(
+    what: str, found: tuple[int, ...], wanted: str, remedy: str = "of the same motion and joint_terms"
+) -> ShapeError:
+    return ShapeError(Problem(f"fit: {what} does not fit", str(found), wanted, remedy))
 
 
 def _along(along: list[Array], rows: Array) -> Array:

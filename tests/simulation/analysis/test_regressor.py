@@ -197,6 +197,9 @@ def test_motions_that_do_not_show_parameters_are_noted() -> None:
     static = base.fit(m.regressor(postures, rest, rest), m.bias(postures, rest))
     assert static.notes[0].startswith("the motion determines 4 of 6 base parameters, and not Iyy(upper), Iyy(lower): ")
     assert np.isinf(static.condition) and np.isinf(static.deviations).tolist() == [False, False, True] * 2
+    near = 0.5 + 1e-3 * postures
+    both = base.fit(m.regressor(near, rest, rest), m.bias(near, rest)).notes
+    assert len(both) == 2 and both[1].startswith("the motion tells base parameters poorly apart: mx(")
     np.testing.assert_allclose(
         static.values[[0, 1, 3, 4]], base.fit(*arm_and_rows(1.0)[1:]).values[[0, 1, 3, 4]], atol=1e-12
     )
@@ -219,7 +222,7 @@ def test_columns_of_rounding_determine_nothing() -> None:
     [
         ({"efforts": np.zeros(2)}, "efforts does not fit"),
         ({"regressor": np.zeros((9, 2, 6))}, "regressor does not fit"),
-        ({"noise": [1.0]}, "noise does not fit"),
+        ({"noise": [1.0]}, r"noise does not fit(\n.*)*one number a row"),
         ({"noise": [1.0, 0.0]}, "above zero"),
         ({"efforts": np.full((9, 2), np.nan)}, "not finite"),
         ({"regressor": np.zeros((3, 2, 20)), "efforts": np.zeros((3, 2))}, "6 equations for 6 parameters"),
