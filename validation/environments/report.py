@@ -30,9 +30,6 @@ from .race import TURNS
 from .record import NATIVE, OURS, TOLERANCE, Absent, Record, Row
 from .worker import work
 
-# Annotations are values here: the options of a command name the environments.
-
-
 SETTINGS: Mapping[str, Mapping[str, str]] = {
     in_node.NAME: {},
     **{one.name: one.settings for one in (JAX, TORCH, CASADI)},
