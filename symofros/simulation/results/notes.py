@@ -275,4 +275,9 @@ NOTES: Mapping[str, NoteKind] = {
         "an outcome of sf.Steppers is asked for, of a motion whose inputs are not kept; it says what others bear",
         "an sf.Stepper with the same inputs",
     ),
+    "batch not examined": NoteKind(
+        "a motion of so many steps is not examined in a batch",
+        "a batch has events, or records of its end alone, and more than 100 000 steps a motion",
+        "sf.simulate of that motion, or without events a closer output",
+    ),
 }

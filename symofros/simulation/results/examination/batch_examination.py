@@ -30,9 +30,9 @@ from symofros.simulation.stepping.stepper import Stepper
 
 # Share of the span after the last state in which an input is looked at, where steps have no length of their own.
 _NEXT = 1e-3
-_NOT_EXAMINED = "a motion with events of so many steps is not examined in a batch: sf.simulate says more of it"
-# Steps of the longest run that is made once more as a whole, and how many ends of steps are kept.
-_MADE_AGAIN, _KEPT = 100_000, 4096
+# Steps of the longest run that is made once more as a whole, how many ends of steps are kept, and the fewest records
+# that a longer one is examined at.
+_MADE_AGAIN, _KEPT, _RECORDS = 100_000, 4096, 3
 
 
 @dataclass(frozen=True)
@@ -68,7 +68,10 @@ class BatchExamination:
         run = self._made_again(run, failed=status < 0)
         run.stepper.inputs_at(*last)
         done = self.settings.max_steps is not None and steps >= self.settings.max_steps
-        return diagnose_one(run, status, bendings, fault, interrupted=status == Status.RUNNING and not done)
+        outcome = diagnose_one(run, status, bendings, fault, interrupted=status == Status.RUNNING and not done)
+        if outcome.kind != "finished" or of_steps(outcome.notes):
+            return outcome
+        return replace(outcome, notes=(*outcome.notes, *self._not_seen(run)))
 
     def outcome_with_events(
         self, i: int, status: int, states: tuple[Array, ...], steps: int, met: Sequence[Met]
@@ -89,7 +92,7 @@ class BatchExamination:
         outcome = failure or end.outcome(t, reason=reason if status == Status.TERMINAL_EVENT else "")
         notes = self._notes_by_itself(i, steps) if status != Status.RUNNING else None
         if notes is None:
-            notes = (*distinct(note for one in met for note in notes_of(self.single, one)), _NOT_EXAMINED)
+            notes = (*distinct(note for one in met for note in notes_of(self.single, one)), _not_examined_note())
         return replace(outcome, notes=(*outcome.notes, *notes))
 
     def _notes_by_itself(self, i: int, steps: int) -> tuple[str, ...] | None:
@@ -101,12 +104,16 @@ class BatchExamination:
         settings.apply(stepper)
         return run_to_its_end(stepper, settings, *start).outcome.notes
 
+    def _not_seen(self, run: ExaminedRun) -> tuple[str, ...]:
+        """The note on a run, too long to be made once more, of which little but its end is known."""
+        return (_not_examined_note(),) if run.steps > _MADE_AGAIN and len(run.states[0]) < _RECORDS else ()
+
     def notes_on_steps(self, i: int, states: tuple[Array, ...], steps: int) -> tuple[str, ...]:
         """Notes on the steps of run i, which finished; arguments as of `outcome`."""
         if self.initial.events:
             return of_steps(self._notes_by_itself(i, steps) or ())
         run = self._made_again(self._run(i, states, steps), failed=False)
-        return examine_run(run, ended_well=True, failed=False)[1]
+        return examine_run(run, ended_well=True, failed=False)[1] or self._not_seen(run)
 
     def first_parameters(self, i: int) -> Array:
         """Run-time parameters of run i where it begins, with its modes of contacts and of friction that sticks."""
@@ -184,6 +191,10 @@ class BatchExamination:
     def __getstate__(self) -> dict[str, Any]:
         """All but the stepper, whose memory is that of C."""
         return {name: value for name, value in vars(self).items() if name != "single"}
+
+
+def _not_examined_note() -> str:
+    return "a motion of so many steps is not examined in a batch: sf.simulate says more of it"
 
 
 def _row(rows: Array, i: int) -> Array:

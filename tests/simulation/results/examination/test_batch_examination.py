@@ -9,6 +9,7 @@ import pytest
 import symofros as sf
 from symofros.simulation.results.examination import batch_examination, diagnosis
 from symofros.simulation.results.examination.step_size import examine_run
+from tests.simulation.events.test_forces_that_switch import FALL, model_of
 from tests.simulation.results.examination.test_switched_run import (
     box_over_floor,
     relay,
@@ -40,4 +41,15 @@ def test_long_runs_of_batches_with_events_say_that_they_are_not_examined(monkeyp
     model, q, v, given = relay()
     monkeypatch.setattr(batch_examination, "_MADE_AGAIN", 100)
     (note,) = sf.simulate_batch(model, [q], [v], **given, method="rk4", dt=2.0 / 120).outcome(0).notes
-    assert note == "a motion with events of so many steps is not examined in a batch: sf.simulate says more of it"
+    assert note == "a motion of so many steps is not examined in a batch: sf.simulate says more of it"
+
+
+def test_long_runs_of_batches_that_record_their_end_alone_say_that_they_are_not_examined() -> None:
+    """A pendulum on a stop by steps that are too long: records show it, and its end alone does not."""
+    given: dict[str, Any] = {**FALL, "t_end": 20.0, "dt": 1.8e-4}
+    model, start = model_of("pendulum", "stop"), [[0.0]]
+    (note,) = sf.simulate_batch(model, start, **given).outcome(0).notes
+    assert note.startswith("a motion of so many steps is not examined in a batch")
+    assert note in str(sf.simulate_batch(model, start, **given))
+    (note,) = sf.simulate_batch(model, start, **given, output=0.01).outcome(0).notes
+    assert "over forces that bend or jump" in note
