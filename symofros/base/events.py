@@ -143,7 +143,7 @@ class Named(NamedTuple):
             raise UnknownNameError(Problem(what, f"'{name}' among coordinates", rule, remedy))
         if found := speed_of(name, self.v):
             return "v", self.v.index(found)
-        known = [*self.par, *self.v]
+        known = [*self.par, *(speed_column(speed, self.q) for speed in self.v)]
         rule = "an action sets run-time parameters, and speeds: d and the coordinate's name, or the speed's own"
         what = f"event '{event}': its action sets '{name}', which is no parameter or speed"
         raise UnknownNameError(Problem(what, ", ".join(known[:12]) or "none", rule, did_you_mean(name, known)))

@@ -252,6 +252,8 @@ def test_invalid_actions_are_refused_by_name() -> None:
     assert outcome(dq1="1/grip").kind == "input failed" and "speed 'q1'" in outcome(dq1="1/grip").reason
     with pytest.raises(sf.UnknownNameError, match="its action sets 'girp'.*(?s:.)*did you mean 'grip'"):
         outcome(girp=1)
+    with pytest.raises(sf.UnknownNameError, match=r"its action sets 'y'(?s:.)*use one of: .* dq1, "):
+        outcome(y=1)  # Names of speeds that are coordinates' were offered, and refused.
     with pytest.raises(sf.UnknownNameError, match="sets the coordinate 'q1'(?s:.)*its speed, 'dq1'"):
         outcome(q1=0.7)
     with pytest.raises(sf.UnknownNameError, match="event 'dock', what its action sets 'grip' to: (?s:.)*'gripp'"):

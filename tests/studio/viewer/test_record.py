@@ -5,6 +5,7 @@ from __future__ import annotations
 import importlib.util
 import re
 import sys
+from dataclasses import replace
 from importlib import import_module
 from pathlib import Path
 
@@ -121,6 +122,8 @@ def test_a_page_that_simulates_needs_a_trajectory_a_page_and_zig(
     with pytest.raises(SymofrosError, match="any of method, dt"):
         sf.record(SYSTEM, run, tmp_path / "m.html", simulate={"step": 1e-3})
     monkeypatch.setattr(importlib.util, "find_spec", lambda name: None)
-    with pytest.raises(sf.CompileError, match=r"pip install 'symofros\[zig\]'"):
-        sf.record(SYSTEM, run, tmp_path / "m.html", simulate=True)
+    ends = replace(SYSTEM, events={"late": sf.Event("t - 1", terminal=True)})  # The page goes on there.
+    for system in (SYSTEM, ends):
+        with pytest.raises(sf.CompileError, match=r"pip install 'symofros\[zig\]'"):
+            sf.record(system, run, tmp_path / "m.html", simulate=True)
     assert not list(tmp_path.iterdir())

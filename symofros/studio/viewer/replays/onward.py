@@ -61,8 +61,9 @@ def onward(system: System, run: object, t: Array, q: Array, stepping: Stepping) 
         )
     method = METHODS.get(run.statistics.method)
     own = {} if method is None or method.family.multistep else {"method": run.statistics.method}
+    ends = {name: None for name, event in system.events.items() if event.terminal}  # The page goes on there.
     with tempfile.TemporaryDirectory() as folder:
-        export(system, "wasm", Path(folder) / "page", **{**own, **stepping})
+        export(system, "wasm", Path(folder) / "page", events=ends, **{**own, **stepping})
         page = (Path(folder) / "page" / "index.html").read_text(encoding="utf-8")
     states = {"q": q, "v": _at(t, run.t, run.v), "u": _at(t, run.t, run.u)}
     doubles = {name: np.ascontiguousarray(values, dtype="<f8").tobytes() for name, values in states.items()}
