@@ -11,6 +11,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
+from symofros.base.arguments import checked
 from symofros.base.arrays import Array
 from symofros.diagrams.observer import NoObserver
 from symofros.diagrams.program.compiled import CompiledDiagram
@@ -123,6 +124,7 @@ class DiagramRuns(Runs):
         return "\n".join(lines)
 
 
+@checked
 def run_batch(
     compiled: CompiledDiagram,
     t_end: float,

@@ -108,6 +108,8 @@ def test_batch_dimensions_broadcast() -> None:
     runs = simulation.run_batch(0.1, inputs={"goal": goals, "one": ones}, output=0.1)
     assert runs.shape == (3, 4) and runs["lag.y"].shape == (3, 4, 2) and runs["goal"].shape == (3, 4, 2, 2)
     assert np.array_equal(runs[2, 1]["lag.y"], runs["lag.y"][2, 1])
+    with pytest.raises(sf.ShapeError, match=r"index 2 is not that of one run" + FOUR_PARTS):
+        runs[2]
     single = simulation.run_batch(0.1, inputs={"goal": 0.0, "one": 1.0}, output=0.1)
     assert single.shape == () and single.ok
     for none in ({"goal": 0.0, "one": np.zeros(0)}, {"goal": sf.Signal([0.0, 1.0], np.zeros((0, 2, 2))), "one": 0.0}):
@@ -171,6 +173,7 @@ def test_an_interrupt_keeps_the_finished_part(monkeypatch: pytest.MonkeyPatch) -
         ({"starts": {"plant.q1": np.zeros(3), "plant.q2": np.zeros(2)}}, sf.ShapeError, "do not broadcast"),
         ({"realtime": True}, sf.SymofrosError, "an option of single runs"),
         ({"threads": 0}, sf.SymofrosError, "no thread"),
+        ({"threads": 1.5}, sf.ArgumentError, "threads is not a whole number"),
         ({"method": "rodas4"}, sf.SymofrosError, "method 'rodas4'"),
         ({"rtol": 1e-3, "threads": 2, "starts": {"plant.q1": np.zeros(3)}}, sf.SymofrosError, "adaptive steps, 'rtol'"),
     ],

@@ -8,6 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
+from symofros.errors import Problem, ShapeError
 from symofros.simulation.results.ends import ENDS
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.stepping.status import Status
@@ -47,8 +48,16 @@ class Runs(ABC):
         """Outcome of one run; its steps and inputs are examined at this call, which takes as long as a single run."""
 
     def number(self, index: Index) -> int:
-        """Number of a run among all; `index` addresses all batch dimensions."""
-        return int(np.arange(self.status.size).reshape(self.shape)[index])
+        """Number of a run among all; `index` addresses all batch dimensions.
+
+        Raises:
+            ShapeError: It leaves some of them out.
+        """
+        found = np.arange(self.status.size).reshape(self.shape)[index]
+        if np.ndim(found):
+            what, rule = f"runs: index {index} is not that of one run", f"an index into all of {self.shape}"
+            raise ShapeError(Problem(what, f"runs of shape {np.shape(found)}", rule, "number each dimension"))
+        return int(found)
 
     def __len__(self) -> int:
         """Number of runs."""
