@@ -101,7 +101,7 @@ WAYS = ways_of(f"""
 {Q}{_OWN}value = [[*p.CalcPointsPositions(c, f, [[0], [0], [0]], own[0]).ravel(), *f.CalcRotationMatrix(c, \
 own[0]).matrix().flat] for f in own]
 == frame_velocities:CalcRelativeSpatialVelocity | Frame.CalcRelativeSpatialVelocity
-{QV}{_OWN}{_each("f.CalcRelativeSpatialVelocity(c, W, W)", "f in own")}
+{QV}{_OWN}{_each("f.CalcRelativeSpatialVelocity(c, W, W, W)", "f in own")}
 == gyroscopes:CalcAngularVelocity | Frame.CalcAngularVelocity
 {QV}{_OWN}value = [f.CalcAngularVelocity(c, W, f) for f in own]
 == velocimeters | Frame.CalcSpatialVelocity
