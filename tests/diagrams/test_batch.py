@@ -159,7 +159,8 @@ def test_an_interrupt_keeps_the_finished_part(monkeypatch: pytest.MonkeyPatch) -
     finally:
         signal.setitimer(signal.ITIMER_REAL, 0.0)
         signal.signal(signal.SIGALRM, before)
-    assert set(runs.kinds) == {"interrupted"} and runs.t_last.max() > 0.0 and runs.t_last.min() == 0.0
+    assert "interrupted" in runs.kinds and set(runs.kinds) <= {"interrupted", "finished"}
+    assert runs.t_last.max() > 0.0 and runs.t_last.min() == 0.0
 
 
 @pytest.mark.parametrize(
