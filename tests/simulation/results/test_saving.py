@@ -5,6 +5,7 @@ from __future__ import annotations
 import errno
 import os
 import signal
+from collections.abc import Iterator
 from pathlib import Path
 from typing import Any, NoReturn
 
@@ -23,6 +24,14 @@ RUNS = {
     "model": ("rigid/cart_pole.yaml", "symofros.simulation.results.examination.diagnosis.examine_run"),
     "diagram": ("square.yaml", "symofros.diagrams.run.examination.diagnosis.examine_steps"),
 }
+
+
+@pytest.fixture(autouse=True)
+def _ctrl_c_is_heard() -> Iterator[None]:
+    """A process that was started in the background ignores it."""
+    before = signal.signal(signal.SIGINT, signal.default_int_handler)
+    yield
+    signal.signal(signal.SIGINT, before)
 
 
 def _simulated(kind: str, output: Path) -> Result:
