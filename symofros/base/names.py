@@ -37,7 +37,8 @@ _USED_BESIDE_EXPORTS = frozenset(
     " ans e eps i inf j nan pi"
     " abs acos any asin atan atan2 ceil cos cosh cross det diag diff disp dot eig error exp eye find fix floor inv"
     " length linspace load log max mean min mod norm ones plot rand randn rank reshape round save sign sim sin sinh"
-    " size sort sqrt std step sum svd tan tanh trace zeros".split()
+    " size sort sqrt std step sum svd tan tanh trace zeros"
+    " cd classdef clear exist mexext mkoctfile numel pwd rehash spmd strncmp tempdir until unwind_protect which".split()
 )
 _RESERVED_PREFIXES = ("symofros_", "sym_", "fmi2", "fmi3")
 _ILLEGAL = re.compile(r"[^A-Za-z0-9]+")

@@ -72,7 +72,7 @@ def test_reserved_names_become_other_identifiers(name: str) -> None:
     assert called.isidentifier()
 
 
-@pytest.mark.parametrize("name", ["test", "All", "clean", "pi", "i", "sin", "step"])
+@pytest.mark.parametrize("name", ["test", "All", "clean", "pi", "i", "sin", "step", "error", "which"])
 def test_exports_have_no_name_that_cmake_or_matlab_uses(name: str, tmp_path: Path) -> None:
     """CMake refused a target "test"; on Matlab's path a MEX file "pi" took the place of the number."""
     system = sf.System(name, PENDULUM.bodies, PENDULUM.parameters)

@@ -7,7 +7,6 @@ from pathlib import Path
 
 from symofros.base.c_text import c_string, comment
 from symofros.diagrams.diagram import Diagram
-from symofros.errors import ExportError, Problem
 from symofros.exports.c.c_package import model_files
 from symofros.exports.c.unity import MODEL_LOOP, unity
 from symofros.exports.diagram import DIAGRAM_LOOP, diagram_program, loop_files
@@ -46,11 +45,6 @@ Parameters may be left out or empty: first values; U of flag 2: as it is. An eve
 ends T, or gives a t before that asked for. An empty {name}() prints this text.
 """
 
-# Words of the languages, and what the script below calls: no function may hide it.
-_TAKEN = frozenset(
-    "classdef spmd until unwind_protect"
-    " any cd clear error exist mex mexext mkoctfile numel pwd rehash strncmp tempdir which".split()
-)
 _BUILD = """% Builds {name}, in Octave or Matlab: run it in this folder.
 % Seen from elsewhere, a function of that name is another one, which this folder hides.
 here = pwd();
@@ -79,10 +73,9 @@ def write_mex(material: Material, folder: Path) -> Exported:
     """NAME_mex.c with what it includes, NAME.m with the help, and build_NAME.m.
 
     Raises:
-        ExportError: The folder is not ours, or Matlab has another use for the name.
+        ExportError: The folder is not ours.
     """
     name, record = material.c_name, material.record
-    _refuse_taken(name)
     text = _HELP.format(
         name=name,
         title=comment(record.name),
@@ -114,11 +107,10 @@ def write_diagram_mex(
     """The same files of a diagram; arguments as of `write_diagram`.
 
     Raises:
-        ExportError: The diagram calls Python, the folder is not ours, or Matlab has another use for the name.
+        ExportError: The diagram calls Python, or the folder is not ours.
     """
     program = diagram_program(diagram, outputs, stepping, generator)
     name, shown = program.name, program.interface
-    _refuse_taken(name)
     text = _DIAGRAM_HELP.format(
         name=name,
         title=comment(diagram.name),
@@ -133,20 +125,6 @@ def write_diagram_mex(
     ]
     files = _function(name, diagram.name, text, own, generator, program.c_files) | program.files | loop_files()
     return write_folder(folder, "mex", name, files, generator, program.notes)
-
-
-def _refuse_taken(name: str) -> None:
-    """Refuse names of other functions.
-
-    Raises:
-        ExportError: Matlab has another use for the name.
-    """
-    if name in _TAKEN:
-        rule, remedy = (
-            "what is exported is a function of its name, which hides no other",
-            f"for example name='my_{name}'",
-        )
-        raise ExportError(Problem("mex: the name is taken in Matlab and Octave", name, rule, remedy))
 
 
 def _function(

@@ -162,8 +162,3 @@ def test_a_name_of_octaves_own_is_refused_where_it_is_built(name: str, tmp_path:
     assert f"{name} is a function already" in done.stderr
     assert f"my_{name}" in done.stderr
     assert not (tmp_path / f"{name}.mex").exists()
-
-
-def test_a_name_that_the_build_script_calls_is_refused(tmp_path: Path) -> None:
-    with pytest.raises(sf.ExportError, match="name is taken"):
-        sf.export(system_of("pendulum"), "mex", tmp_path, name="error")
