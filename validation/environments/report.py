@@ -50,7 +50,7 @@ def run_environment(
         models: Labels of the models.
         turns: Interleaved turns of each race.
         record: Record that is added to.
-        doing: Told what comes next.
+        doing: Called with what comes next.
 
     Raises:
         RuntimeError: The process ended before its time; with its last words.

@@ -74,7 +74,7 @@ def listed(shares: Sequence[float]) -> Callable[[int, int], float]:
     ("shares", "jumping", "refinements", "largest"),
     [
         ([0.009], False, 1, 0.009),  # Within a tenth of the tolerance at once.
-        ([0.009, 0.009], True, 2, 0.009),  # Speeds that jump: half the step may err alike.
+        ([0.009, 0.009], True, 2, 0.009),  # Speeds that jump: half the step may have the same error.
         ([0.02, 0.05, 0.055], False, 3, 0.055),
         ([0.05, 0.02, 0.011], False, 3, 0.05),
         ([0.02, 0.04, 0.06, 0.08], False, 4, 0.08),

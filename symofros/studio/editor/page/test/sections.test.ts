@@ -45,7 +45,7 @@ const BY_TABLE = [
 
 /** What a window does not reach, and why. */
 const AS_TEXT: Record<string, string> = {
-  "parameters.*.description": "words for people, which the table of parameters has no room for",
+  "parameters.*.description": "words for people, which the table of parameters does not show",
 };
 
 /** A schema without references and without null: each way of `anyOf`. */
