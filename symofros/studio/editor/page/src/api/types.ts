@@ -242,7 +242,12 @@ export interface Part {
   parameters: JsonMap;
   inputs: JsonMap;
   bodies: JsonMap;
-  closures: JsonMap;
+  /** What stands between the bodies, or on one, by its section. */
+  links: JsonMap;
+  /** Switches of these links, by their names. */
+  switches: JsonMap;
+  /** The body that stands still where the part was taken from. */
+  ground: string;
 }
 
 /** A model or a diagram to begin with. */
