@@ -25,6 +25,7 @@ from symofros.description.yaml import YamlFault
 from symofros.errors import Problem
 from symofros.studio.editor.diagrams.native_code import ConsentError
 from symofros.studio.editor.document.document import StaleError
+from symofros.studio.editor.document.documentation import documented
 from symofros.studio.editor.document.examples import listed
 from symofros.studio.editor.document.figures.shape_curves import curves
 from symofros.studio.editor.document.parts.palette import catalogue
@@ -90,6 +91,7 @@ class Editor:
             Route("/api/inertia", self.inertia, methods=["POST"]),
             Route("/api/files", self.files),
             Route("/api/examples", self.examples),
+            Route("/api/docs", self.docs),
             Route("/api/parts", self.parts),
             Route("/api/parts", self.keep_part, methods=["POST"]),
             Route("/api/import", self.import_text, methods=["POST"]),
@@ -172,6 +174,10 @@ class Editor:
     async def examples(self, _: Request) -> Response:
         """Examples that a document can be begun from."""
         return JSONResponse({"examples": listed()})
+
+    async def docs(self, request: Request) -> Response:
+        """A page of the documentation, or a section of it."""
+        return JSONResponse({"text": await run_sync(documented, request.query_params.get("page", ""))})
 
     async def parts(self, _: Request) -> Response:
         """Sub-assemblies that were kept."""

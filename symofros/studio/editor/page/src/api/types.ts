@@ -196,6 +196,8 @@ export interface PaletteItem {
 /** An entry of a diagram's palette. */
 export interface BlockItem extends PaletteItem {
   group: string;
+  /** Page of the documentation, and its section. */
+  page?: string;
   /** All that its author says of it. */
   about?: string;
 }
