@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike
 
-from symofros.errors import Problem, ShapeError
+from symofros.errors import ShapeError
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -57,12 +57,10 @@ def numeric(what: str, values: ArrayLike) -> Array:
     array = real_array(values)
     if array is None:
         raise ShapeError(
-            Problem(
-                f"{what} is not an array of numbers",
-                f"{type(values).__name__} {values!r:.60}",
-                f"{what} is an array of real numbers",
-                "convert texts, dates and complex numbers, fill in masked ones before",
-            )
+            f"{what} is not an array of numbers",
+            f"{type(values).__name__} {values!r:.60}",
+            f"{what} is an array of real numbers",
+            "convert texts, dates and complex numbers, fill in masked ones before",
         )
     return np.array(array)
 
@@ -81,7 +79,7 @@ def vector(what: str, values: ArrayLike, size: int) -> Array:
     array = numeric(what, values)
     if array.shape != (size,):
         rule = f"{what} has shape ({size},): one state, no batch"
-        raise ShapeError(Problem(f"{what} has the wrong shape", str(array.shape), rule, f"give {size} numbers"))
+        raise ShapeError(f"{what} has the wrong shape", str(array.shape), rule, f"give {size} numbers")
     return array
 
 

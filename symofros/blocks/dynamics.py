@@ -12,7 +12,7 @@ from symofros.blocks.quantities import WRENCH, frame_ports, motion_port
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Terms, Values
 from symofros.diagrams.program.variants import FRICTION
 from symofros.diagrams.tensor import Tensor, joined
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, did_you_mean
 from symofros.expr import ZERO
 
 
@@ -72,12 +72,10 @@ class ForwardDynamics(Block):
         if self.engaged:
             if not names:
                 raise DescriptionError(
-                    Problem(
-                        f"block '{self.name}': nothing to engage",
-                        f"model '{self.model}'",
-                        "engaged belongs to a model with constraints",
-                        "leave it out, or add a closure",
-                    )
+                    f"block '{self.name}': nothing to engage",
+                    f"model '{self.model}'",
+                    "engaged belongs to a model with constraints",
+                    "leave it out, or add a closure",
                 )
             inputs.append(Port("engaged", (len(dict.fromkeys(names)),)))
         outputs = [

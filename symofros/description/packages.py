@@ -15,7 +15,7 @@ from pathlib import Path
 from xml.parsers import expat
 
 from symofros.description.reading import resolved
-from symofros.errors import Argument, DescriptionError, Problem
+from symofros.errors import Argument, DescriptionError
 
 Folders = Mapping[str, str | os.PathLike[str]]
 
@@ -52,19 +52,15 @@ class Packages:
         for name, folder in (stated or {}).items():
             if "\0" in os.fspath(folder):
                 shown, rule = f"{os.fspath(folder)!r:.{MAX_SHOWN}}", "the path of a folder holds no NUL character"
-                raise DescriptionError(
-                    Problem(f"package '{name:.{MAX_SHOWN}}' is not there", shown, rule, "check the path")
-                )
+                raise DescriptionError(f"package '{name:.{MAX_SHOWN}}' is not there", shown, rule, "check the path")
         self.stated = {name: resolved(Path(folder)) for name, folder in (stated or {}).items()}
         for name, folder in self.stated.items():
             if not os.path.isdir(folder):
                 raise DescriptionError(
-                    Problem(
-                        f"package '{name:.{MAX_SHOWN}}' is not there",
-                        f"'{str(folder):.{MAX_SHOWN}}'",
-                        "a package is a folder",
-                        "check the path",
-                    )
+                    f"package '{name:.{MAX_SHOWN}}' is not there",
+                    f"'{str(folder):.{MAX_SHOWN}}'",
+                    "a package is a folder",
+                    "check the path",
                 )
 
     @cached_property

@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from symofros.base.arguments import check_argument
 from symofros.base.names import QUOTE, RESERVED, is_rate_symbol, quoted, symbol_of
-from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.errors import SymofrosError, UnknownNameError, did_you_mean
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.extended import Extended, extended_context, extended_rule
@@ -126,12 +126,10 @@ def lower(expression: Expression, graph: Graph, bindings: Mapping[str, Edge]) ->
             raise OverflowError(f"{expression!s:.80} is infinite")
     except ArithmeticError as error:
         raise NoValueError(
-            Problem(
-                f"formula '{expression!s:.80}' has no value",
-                str(error),
-                "constant parts are finite: no division by zero, each within the domain of its function",
-                "mend the formula",
-            )
+            f"formula '{expression!s:.80}' has no value",
+            str(error),
+            "constant parts are finite: no division by zero, each within the domain of its function",
+            "mend the formula",
         ) from None
     return edge
 
@@ -187,7 +185,7 @@ def evaluate(expression: Expression | float, values: Mapping[str, float]) -> flo
     if missing:
         name = min(missing)
         rule, remedy = "each symbol of a formula has a value", did_you_mean(name, values)
-        raise UnknownNameError(Problem(f"'{name}' has no value", ", ".join(map(str, values)) or "none", rule, remedy))
+        raise UnknownNameError(f"'{name}' has no value", ", ".join(map(str, values)) or "none", rule, remedy)
     used = sorted(expression.symbols())
     for name in used:
         if not isinstance(values[name], float):

@@ -107,13 +107,11 @@ class Folder:
         """Replace each <include> in an element, at any depth, by the included elements."""
         if depth > MAX_DEPTH:
             raise DescriptionError(
-                Problem(
-                    f"nested deeper than {MAX_DEPTH}, includes counted",
-                    f"<{element.tag:.60}>",
-                    "a robot needs fewer",
-                    "check that it is the file you meant",
-                    element.where,
-                )
+                f"nested deeper than {MAX_DEPTH}, includes counted",
+                f"<{element.tag:.60}>",
+                "a robot needs fewer",
+                "check that it is the file you meant",
+                element.where,
             )
         children: list[Element] = []
         for child in element.children:

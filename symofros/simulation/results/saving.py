@@ -16,7 +16,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.base.stored import check_writable, write_atomically
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 
 T = TypeVar("T")
 
@@ -36,12 +36,10 @@ def check_file(path: Path, what: str) -> None:
     """
     if path.suffix not in SUFFIXES:
         raise SymofrosError(
-            Problem(
-                f"{what}: can't save as '{path.name}'",
-                path.suffix or "no suffix",
-                ".npz, .csv or .parquet",
-                "choose one of them",
-            )
+            f"{what}: can't save as '{path.name}'",
+            path.suffix or "no suffix",
+            ".npz, .csv or .parquet",
+            "choose one of them",
         )
     if path.suffix == ".parquet":
         _pyarrow(what)
@@ -69,7 +67,7 @@ def save_or_keep(save: Callable[[Path], T], path: Path) -> T:
                 rule = "files are written where there is room, and the right to write"
                 found = error.strerror or str(error)
                 raise SymofrosError(
-                    Problem(f"'{path}' can't be written", found, rule, f"the run is kept: move '{kept}'")
+                    f"'{path}' can't be written", found, rule, f"the run is kept: move '{kept}'"
                 ) from None
         raise
 
@@ -110,12 +108,10 @@ def _pyarrow(what: str) -> tuple[Any, Any]:
         return import_module("pyarrow"), import_module("pyarrow.parquet")  # An extra: 40 MB that only this needs.
     except ImportError:
         raise SymofrosError(
-            Problem(
-                f"{what}: Parquet needs pyarrow",
-                "it is not installed",
-                "pyarrow writes Parquet",
-                "pip install pyarrow, or save as .npz",
-            )
+            f"{what}: Parquet needs pyarrow",
+            "it is not installed",
+            "pyarrow writes Parquet",
+            "pip install pyarrow, or save as .npz",
         ) from None
 
 

@@ -32,7 +32,7 @@ from symofros.studio.editor.document.parts.palette import catalogue
 from symofros.studio.editor.document.session import Json, Session
 from symofros.studio.editor.document.storage import ConflictError
 from symofros.studio.editor.document.workspace import FileError
-from symofros.studio.editor.editing.data_edits import EditError, refusal
+from symofros.studio.editor.editing.data_edits import EditError
 from symofros.studio.editor.jobs.film import MEDIA_TYPES as FILM_TYPES
 from symofros.studio.editor.jobs.film import film_of
 from symofros.studio.editor.jobs.processes import Jobs
@@ -320,7 +320,9 @@ async def body_of(request: Request) -> Json:
     except (ValueError, RecursionError) as error:
         body = str(error)
     if not isinstance(body, dict):
-        raise refusal("the body is not a JSON mapping", f"{body!r:.100}", "bodies are JSON mappings", "reload the page")
+        raise EditError(
+            "the body is not a JSON mapping", f"{body!r:.100}", "bodies are JSON mappings", "reload the page"
+        )
     return body
 
 

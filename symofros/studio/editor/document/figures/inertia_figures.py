@@ -12,7 +12,7 @@ from symofros.description import RigidBody, System
 from symofros.description.yaml import InertiaEntry, SolidEntry
 from symofros.errors import DescriptionError
 from symofros.mechanics.topology import Numbers, moments_about_center
-from symofros.studio.editor.editing.data_edits import refusal
+from symofros.studio.editor.editing.data_edits import EditError
 
 Json = dict[str, Any]
 
@@ -55,4 +55,4 @@ def inertia_figures(stated: Json, known: Mapping[str, float]) -> Json:
 
 def _incomplete(found: str) -> Exception:
     rule = "figures are of a body with numbers for its mass and sizes"
-    return refusal("the inertia is not complete", found, rule, "fill in what is marked")
+    return EditError("the inertia is not complete", found, rule, "fill in what is marked")
