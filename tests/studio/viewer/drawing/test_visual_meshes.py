@@ -340,7 +340,7 @@ def test_gltf_is_turned_from_y_up_to_z_up(form: str, tmp_path: Path) -> None:
     surface = Trimesh(CORNERS, FACES, process=False)
     file = tmp_path / ("part.glb" if form == "glb" else "part.gltf")
     if form == "glb":
-        file.write_bytes(surface.export(file_type="glb"))
+        surface.export(file)
     else:
         files = surface.scene().export(file_type="gltf", embed_buffers=form == "embedded")
         assert len(files) == {"gltf": 3, "embedded": 1}[form]
