@@ -22,10 +22,6 @@ def real_array(values: ArrayLike | None, dtype: npt.DTypeLike = np.float64) -> n
     """The values as an array of real numbers; None where some are not: texts, dates, masked ones, ...
 
     NumPy would read texts and dates, make NaN of None, and drop imaginary parts and masks.
-
-    Args:
-        values: Values.
-        dtype: Type of the array's numbers.
     """
     try:
         if _is_masked(values):
@@ -47,10 +43,6 @@ def _is_masked(values: Any) -> bool:
 def numeric(what: str, values: ArrayLike) -> Array:
     """The values as a new array of real numbers of any shape.
 
-    Args:
-        what: Name of the values in the message.
-        values: Values.
-
     Raises:
         ShapeError: Some are no real numbers.
     """
@@ -67,11 +59,6 @@ def numeric(what: str, values: ArrayLike) -> Array:
 
 def vector(what: str, values: ArrayLike, size: int) -> Array:
     """The values as a new array (size) of real numbers.
-
-    Args:
-        what: Name of the values in the message.
-        values: Values.
-        size: Number of them.
 
     Raises:
         ShapeError: They are no numbers, or another number of them.

@@ -80,13 +80,7 @@ def with_live_view(diagram: Diagram, options: ViewOptions, keeps_pace: bool) -> 
 
 
 def record_run(run: DiagramRun | Trajectory, options: ViewOptions, system: System | None = None) -> list[str]:
-    """Record a run if asked, and return the files written.
-
-    Args:
-        run: Run of a diagram, or of a model.
-        options: Options of the command line.
-        system: System of a model's run.
-    """
+    """Record a run if asked, and return the files written."""
     if options.output is None:
         return []
     if isinstance(run, DiagramRun):

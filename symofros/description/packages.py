@@ -131,12 +131,7 @@ class Packages:
         return _declares_a_model(around / path.relative_to(around).parts[0])
 
     def file(self, name: str, base: Path) -> Path | None:
-        """The file that a description names, links followed; None where it may not be read.
-
-        Args:
-            name: Path as the description states it.
-            base: Folder that the path starts from.
-        """
+        """The file that a description names, links followed; None where it may not be read."""
         path = resolved(base / name)
         return path if self.allows(path) else None
 
@@ -144,9 +139,6 @@ class Packages:
         """The argument that lets a folder be read; None where none is to be proposed.
 
         It opens no more than the folder of a file, and no folder that others use: none above the folder two levels up.
-
-        Args:
-            path: The folder, or a file in it.
         """
         folder = Path(os.path.normpath(path if os.path.isdir(path) else path.parent))
         shared = len(folder.parts) < _MIN_PARTS or not folder.is_relative_to(self.folder.parent.parent)

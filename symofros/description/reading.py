@@ -48,10 +48,6 @@ def _place(problem: Problem) -> tuple[str, int]:
 def read_bytes(path: Path, limit: int) -> bytes:
     """The content of a regular file.
 
-    Args:
-        path: Path of the file.
-        limit: The most bytes that are accepted.
-
     Raises:
         DescriptionError: No such file, not a regular one (a pipe would block), unreadable, or too large.
     """

@@ -188,16 +188,7 @@ def _refuse(resolved: Resolved, stepping: Stepping) -> None:
 def _part_files(
     resolved: Resolved, write: Fuser, number: int, start: tuple[Array, Array], stepping: Stepping, generator: str
 ) -> dict[str, str]:
-    """Name -> text of the files of one part.
-
-    Args:
-        resolved: The diagram.
-        write: Writes functions of its parts.
-        number: Number of the part.
-        start: Its first q, v.
-        stepping: How it steps.
-        generator: Name and version.
-    """
+    """Name -> text of the files of one part."""
     layout, part = resolved.layout, resolved.layout.parts[number]
     record, c_name = record_of(resolved, part), f"{identifier(resolved.wired.name)}_part{number}"
     q, v = start

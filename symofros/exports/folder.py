@@ -64,11 +64,6 @@ def check_folder(folder: Path) -> dict[str, str]:
 def check_same(folder: Path, target: str, name: str) -> None:
     """Refuse a folder with an export of another kind or of another model, whose files a new export would remove.
 
-    Args:
-        folder: Folder that an export is to be written to.
-        target: Kind of export.
-        name: Name of the model.
-
     Raises:
         ExportError: It holds another export, or something that is none of ours.
     """

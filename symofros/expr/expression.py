@@ -111,11 +111,6 @@ class NoValueError(SymofrosError, ArithmeticError):
 def lower(expression: Expression, graph: Graph, bindings: Mapping[str, Edge]) -> Edge:
     """Put a formula into a graph.
 
-    Args:
-        expression: The formula.
-        graph: Graph that receives the operations.
-        bindings: The edge of each symbol.
-
     Raises:
         KeyError: A symbol has no binding.
         NoValueError: A constant part divides by zero, leaves a function's domain or has no end.
@@ -200,10 +195,6 @@ def evaluate(expression: Expression | float, values: Mapping[str, float]) -> flo
 
 def evaluate_extended(expression: Expression | float, values: Mapping[str, Extended]) -> Extended:
     """The value of a formula in extended precision.
-
-    Args:
-        expression: The formula, or a number already.
-        values: Extended number of each symbol.
 
     Raises:
         KeyError: A symbol has no value.

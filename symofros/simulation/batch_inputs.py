@@ -77,10 +77,6 @@ class GivenInputs:
 def sort_inputs(model: Model, u: Inputs | None) -> GivenInputs:
     """Sort inputs by whether they vary over a batch.
 
-    Args:
-        model: Names the inputs.
-        u: Inputs as `simulate_batch` takes them.
-
     Raises:
         ShapeError: An array does not fit.
         SymofrosError: A Python function.

@@ -100,10 +100,6 @@ _ASYMMETRY = 1e-6
 def stiffness_rows(stated: Any, label: str) -> tuple[tuple[Value, ...], ...]:
     """A matrix of stiffness (6, 6), made symmetric where rounding left a difference; empty where none is stated.
 
-    Args:
-        stated: Its rows, or nothing.
-        label: What it is, for errors.
-
     Raises:
         DescriptionError: It has other rows, or is not symmetric.
     """

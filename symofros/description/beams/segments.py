@@ -33,9 +33,6 @@ def segments_of(beam: Beam) -> tuple[Beam, ...]:
 
     The first bears the beam's name and joint, the last its extremity frames.
 
-    Args:
-        beam: Beam as stated.
-
     Raises:
         DescriptionError: A load has components along the axes of the undeformed beam, which segments do not have.
     """

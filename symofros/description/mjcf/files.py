@@ -45,13 +45,7 @@ class Folder:
         return root
 
     def mesh(self, file: str, user: Element, what: str) -> bytes | None:
-        """The content of a mesh file; None after a fault.
-
-        Args:
-            file: File name as the model states it.
-            user: The element that states it.
-            what: The mesh and what needs it, for the problem.
-        """
+        """The content of a mesh file; None after a fault."""
         path = self._place(file, user, self.main.parent)
         if path is None:
             return None

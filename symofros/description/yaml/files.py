@@ -78,10 +78,6 @@ def read_yaml(
 def read_event(name: str, node: Node) -> Event:
     """An event of a file of another kind, which states it as native files do.
 
-    Args:
-        name: Its key.
-        node: Its entry.
-
     Raises:
         YamlFault: With every problem, each at ":line".
     """

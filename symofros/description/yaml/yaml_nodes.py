@@ -120,10 +120,6 @@ def too_many_nodes(where: str) -> Problem:
 def compose_whole(text: str, file: str) -> tuple[Node, list[Problem]]:
     """Read one YAML document; see `yaml_pieces.compose_text`.
 
-    Args:
-        text: Text of the document.
-        file: File name, for the problems.
-
     Returns:
         The root, and the duplicate keys that were found (the first of each counts).
 

@@ -164,15 +164,7 @@ def _refuse_missing(name: str, block: Block, parameters: Mapping[str, Array]) ->
 def _context(
     g: Graph, wired: Wired, name: str, known: Environment, own: Sequence[Mapping[str, Array]]
 ) -> EvaluationContext:
-    """Evaluation context of a block: the symbolic inputs of its formulas.
-
-    Args:
-        g: Graph of the block.
-        wired: The diagram.
-        name: The block.
-        known: What it knows of the diagram.
-        own: Its states, memory and parameters.
-    """
+    """Evaluation context of a block: the symbolic inputs of its formulas."""
     mechanism, (states, memory, parameters) = wired.blocks[name].mechanism(), own
     nq = nv = nc = 0
     if mechanism:

@@ -46,12 +46,6 @@ def place_parts(
 ) -> list[Placed]:
     """A stepper for each part.
 
-    Args:
-        compiled: The diagram.
-        settings_of: Settings of a part's steps, by its model.
-        par: Run-time parameters.
-        begin: State of the diagram that they begin with.
-
     Raises:
         SymofrosError: The method is implicit.
         AssemblyError: A first state closes no loop.

@@ -85,9 +85,6 @@ class TapeFunction:
 def tape_machine(source: str) -> Any:
     """The library that interprets tapes, loaded.
 
-    Args:
-        source: Its C text.
-
     Raises:
         CompileError: There is no C compiler, and no library came with the package.
     """

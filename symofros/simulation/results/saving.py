@@ -26,10 +26,6 @@ SUFFIXES = (".npz", ".csv", ".parquet")
 def check_file(path: Path, what: str) -> None:
     """Refuse a file that columns and arrays can't be saved to; a run is asked before it begins.
 
-    Args:
-        path: Path of the file.
-        what: Is saved, for messages.
-
     Raises:
         SymofrosError: Another suffix than SUFFIXES; or Parquet without pyarrow.
         OSError: The file can't be written.
@@ -48,10 +44,6 @@ def check_file(path: Path, what: str) -> None:
 
 def save_or_keep(save: Callable[[Path], T], path: Path) -> T:
     """Save a result; where its file can't be written, such as on a full disk, keep it in another folder.
-
-    Args:
-        save: Writes the result to a path.
-        path: Path of the file.
 
     Raises:
         SymofrosError: The file can't be written; it says where the result is kept.

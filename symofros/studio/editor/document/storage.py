@@ -56,11 +56,6 @@ class Storage:
     def __init__(self, workspace: Workspace, file: Path | None, revision: int = 1) -> None:
         """Open a file; begin it if it is not there; None: begin one without a name.
 
-        Args:
-            workspace: Folder that the file is in.
-            file: File to open.
-            revision: Revision that its document begins with.
-
         Raises:
             FileError: It can't be read.
         """

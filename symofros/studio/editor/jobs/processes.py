@@ -85,11 +85,6 @@ class Jobs:
     def start(self, kind: str, request: Json, revision: int = 0) -> Job:
         """Start a worker.
 
-        Args:
-            kind: Kind of job, a key of tasks.TASKS.
-            request: Request that the worker process receives.
-            revision: Revision of the document.
-
         Raises:
             EditError: One of that kind is running.
         """

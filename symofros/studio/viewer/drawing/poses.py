@@ -145,14 +145,7 @@ class Mechanism:
     def posture(
         self, q: ArrayLike, u: ArrayLike | None = None, par: ArrayLike | None = None, exaggeration: float = 1.0
     ) -> Posture:
-        """Poses of the links for coordinates (..., nq).
-
-        Args:
-            q: Coordinates.
-            u: Inputs, for prescribed motions.
-            par: Run-time parameters.
-            exaggeration: Factor of the elastic coordinates.
-        """
+        """Poses of the links for coordinates (..., nq)."""
         drawn = np.array(q, dtype=np.float64)
         drawn[..., self._elastic] *= exaggeration
         shape = (*drawn.shape[:-1], len(self._names) + 1)

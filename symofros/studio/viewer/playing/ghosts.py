@@ -57,11 +57,6 @@ class Ghost:
 def ghosts_of(mechanism: Mechanism, runs: Mapping[str, Played], drawing: Drawing) -> tuple[Ghost, ...]:
     """Runs by their names as ghosts of a mechanism.
 
-    Args:
-        mechanism: Mechanism that moves.
-        runs: Runs of it by their names.
-        drawing: Drawing of the run that plays.
-
     Raises:
         ShapeError: A run does not fit the model.
         SymofrosError: There are more than colors, or events change in a run how the mechanism looks.

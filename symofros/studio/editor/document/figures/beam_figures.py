@@ -36,10 +36,6 @@ _MOTIONS = {
 def beam_figures(entry: Any, known: Mapping[str, float]) -> Json:
     """Figures of a beam at the parameters' defaults.
 
-    Args:
-        entry: Beam as the file states it.
-        known: Number of each parameter.
-
     Returns:
         `section`: property -> number, without those that vary along the beam or have none; `frequencies`: direction ->
         the first three of the uniform slender beam, clamped at its root and free at its tip [Hz], without those

@@ -22,10 +22,6 @@ _ENTRIES: dict[str, type[InertiaEntry] | type[SolidEntry]] = {"inertia": Inertia
 def inertia_figures(stated: Json, known: Mapping[str, float]) -> Json:
     """Figures of a rigid body at the parameters' defaults.
 
-    Args:
-        stated: `inertia` or `solid`, as the file states it.
-        known: Number of each parameter.
-
     Returns:
         `mass` [kg], `center_of_mass` in the body frame (3) [m]; `moments` Ixx, Iyy, Izz and `products` Ixy, Ixz, Iyz
         about the mass centre, along the axes of the body frame [kg m^2].
