@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 
-from symofros.errors import SymofrosError
+from symofros.errors import Problem, SymofrosError
 
 
 class Turn:
@@ -21,10 +21,12 @@ class Turn:
         """
         if not self._taken.acquire(blocking=False):
             raise SymofrosError(
-                f"block '{block}': its page shows another run",
-                "two runs at once",
-                "a page shows one run at a time",
-                "let the other end first, or give this diagram a block of its own",
+                Problem(
+                    f"block '{block}': its page shows another run",
+                    "two runs at once",
+                    "a page shows one run at a time",
+                    "let the other end first, or give this diagram a block of its own",
+                )
             )
 
     def leave(self) -> None:

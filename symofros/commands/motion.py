@@ -128,10 +128,12 @@ def simulate(
         else:
             if picture == diagrams.WINDOW:
                 raise sf.SymofrosError(
-                    "--plot window: the file is a model",
-                    str(model),
-                    "windows are of diagrams only, whose plots they show",
-                    "write a picture: --plot run.png",
+                    sf.Problem(
+                        "--plot window: the file is a model",
+                        str(model),
+                        "windows are of diagrams only, whose plots they show",
+                        "write a picture: --plot run.png",
+                    )
                 )
             viewing.check()
             if output:

@@ -32,7 +32,7 @@ from symofros.diagrams.run.python_blocks import begun
 from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.diagrams.stepper import DiagramStepper
-from symofros.errors import SymofrosError
+from symofros.errors import Problem, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.build import find_toolchain
 from symofros.simulation.progress import bar
@@ -145,8 +145,8 @@ class Simulation:
     ) -> DiagramStateSpace:
         """Linearise it about a state, from its inlets to its outlets, by exact derivatives.
 
-        Continuous blocks and mechanisms give x' = A x + B u. A diagram of blocks sampled at one rate, without
-        continuous states, gives x[k + 1] = A x[k] + B u[k], whose states are what the blocks remember.
+        Continuous blocks and mechanisms give x' = A x + B u. With sampled blocks it is x[k + 1] = A x[k] + B u[k] over
+        the least common multiple of their periods, exact, about an equilibrium.
 
         Args:
             t: Time [s].
@@ -158,7 +158,7 @@ class Simulation:
         Raises:
             UnknownNameError: There is no such inlet, parameter or state.
             AssemblyError: The state does not meet the constraints.
-            SymofrosError: Samples meet continuous states, or a block switches at this state.
+            SymofrosError: A block switches at this state, or rounds; or samples meet a motion that is no equilibrium.
         """
         return linearised(self.compiled, t=t, inputs=inputs, parameters=parameters, starts=starts, outputs=outputs)
 
@@ -233,18 +233,20 @@ class Simulation:
         resolved = self._given(inputs)
         if not (math.isfinite(dt) and dt > 0.0):
             what, rule = "diagram: the step is not positive", "dt > 0, and finite"
-            raise SymofrosError(what, f"dt = {dt}", rule, "1e-3 s suits most arms")
+            raise SymofrosError(Problem(what, f"dt = {dt}", rule, "1e-3 s suits most arms"))
         if method not in METHODS or METHODS[method].kind != "explicit" or METHODS[method].adaptive:
             raise SymofrosError(
-                f"diagram: method '{method}' interpreted",
-                "not of fixed explicit steps",
-                "an interpreted run steps by rk4 or euler",
-                "use run",
+                Problem(
+                    f"diagram: method '{method}' interpreted",
+                    "not of fixed explicit steps",
+                    "an interpreted run steps by rk4 or euler",
+                    "use run",
+                )
             )
         if any(piece.switching for piece in resolved.pieces.values()):
             what = f"diagram '{resolved.wired.name}': events of mechanisms"
             rule = "it does not locate events of mechanisms, nor modes of friction that sticks, or of rigid contacts"
-            raise SymofrosError(what, "an interpreted run", rule, "use run")
+            raise SymofrosError(Problem(what, "an interpreted run", rule, "use run"))
         par = parameter_values(resolved, parameters or {})
         toolchain = find_toolchain(self.options.compiler) if compiled else None
         interval = record_interval(record, t0, t_end, dt)
@@ -270,9 +272,11 @@ def _end(diagram: Diagram, t_end: float | None) -> float:
     end = t_end if t_end is not None else diagram.simulation.t_end
     if end is None:
         raise SymofrosError(
-            f"diagram '{diagram.name}': no end of time",
-            "t_end is not stated",
-            "a run ends somewhere",
-            "give t_end, or state it under simulation",
+            Problem(
+                f"diagram '{diagram.name}': no end of time",
+                "t_end is not stated",
+                "a run ends somewhere",
+                "give t_end, or state it under simulation",
+            )
         )
     return end

@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
+from dataclasses import dataclass, replace
 from pathlib import Path
 from typing import Any
 
@@ -12,6 +12,7 @@ from scipy.linalg import expm
 
 import symofros as sf
 from symofros import blocks
+from symofros.diagrams.block import EvaluationContext, Values
 from tests.diagrams.parts import Spoken
 
 MODELS = Path(__file__).parents[2] / "reference_models"
@@ -186,6 +187,104 @@ def test_samples_follow_the_linear_model() -> None:
         x = found.A @ x + found.B @ inputs[k]
 
 
+@pytest.mark.parametrize("late", [False, True])
+def test_a_sampled_law_of_a_mass_has_the_poles_by_hand(late: bool) -> None:
+    """Forces held: x+ = x + T v + T^2 F/(2 m), v+ = v + T F/m, F = kp (goal - x) - kd v of this sample or the last."""
+    T, m, kp, kd = 0.1, 2.0, 30.0, 6.0
+    diagram = sf.Diagram("servo")
+    diagram.add_inlet("goal", "error.u1", shape=())
+    diagram.add(blocks.Sum(name="error", signs="+-", period=T), u2="x.y")
+    diagram.add(blocks.Gain(name="kp", gain=kp), u="error.y")
+    diagram.add(blocks.Gain(name="kd", gain=kd, period=T), u="v.y")
+    diagram.add(blocks.Sum(name="force", signs="+-"), u1="kp.y", u2="kd.y")
+    if late:
+        diagram.add(blocks.UnitDelay(name="late", period=T), u="force.y")
+    diagram.add(blocks.Gain(name="inverse", gain=1.0 / m), u="late.y" if late else "force.y")
+    diagram.add(blocks.Integrator(name="v"), u="inverse.y")
+    diagram.add(blocks.Integrator(name="x"), u="v.y")
+    diagram.outlets["x_"] = "x.y"
+    found = sf.Simulation(diagram).state_space(starts={"x.x": 0.7, "v.x": -1.0})  # Linear: any state will do.
+    assert found.period == T and found.states == ("v.x", "x.x", *(["late.before"] if late else []))
+    free, push, law = np.array([[1.0, 0.0], [T, 1.0]]), np.array([T, 0.5 * T * T]) / m, np.array([-kd, -kp])
+    A, B = free + np.outer(push, law), kp * push
+    if late:
+        A, B = np.block([[free, push[:, None]], [law, 0.0]]), np.array([0.0, 0.0, kp])
+    assert np.abs(found.A - A).max() < 1e-13 and np.abs(found.B[:, 0] - B).max() < 1e-13
+    assert np.abs(found.rates - (A @ [-1.0, 0.7, 0.0][: len(A)] - [-1.0, 0.7, 0.0][: len(A)])).max() < 1e-13
+    # z^2 + (a + b - 2) z + 1 + a - b with a = kp T^2/(2 m), b = kd T/m; late: z (z - 1)^2 + (a + b) z + a - b.
+    a, b = 0.5 * kp * T * T / m, kd * T / m
+    polynomial = [1.0, -2.0, 1.0 + a + b, a - b] if late else [1.0, a + b - 2.0, 1.0 + a - b]
+    assert np.abs(np.poly(found.A) - polynomial).max() < 1e-13
+
+
+def several_rates() -> tuple[sf.Diagram, dict[str, Any], float]:
+    """A cart-pole under a late state feedback, whose goal comes from a slower loop that begins later."""
+    diagram = plant(sf.load(MODELS / "rigid" / "cart_pole.yaml"), {}, "plant.q", "plant.v", u="lag.y")
+    diagram.add(blocks.Join(name="state", count=3), u1="plant.q", u2="plant.v", u3="outer.y")
+    law = blocks.Gain(name="law", gain=[[1.0, 35.0, 2.5, 8.0, -1.0]], period=0.02)
+    diagram.add(law, u="state.y")
+    diagram.add(blocks.TransportDelay(name="lag", delay=0.03, period=0.02, start=[0.0]), u="law.y")
+    diagram.add(blocks.Sum(name="outer", period=0.06, offset=0.01), u1="command.y", u2="sum.y")
+    diagram.add(blocks.Integrator(name="sum", period=0.04, start=0.0), u="outer.y")
+    diagram.add(blocks.Gain(name="command", gain=2.0))
+    diagram.add_inlet("push", "command.u", shape=())
+    for name in ("lag", "outer", "sum", "law"):
+        diagram.outlets[name + "_y"] = f"{name}.y"
+    return diagram, {}, 0.12
+
+
+def on_constraints() -> tuple[sf.Diagram, dict[str, Any], float]:
+    """A four-bar at its equilibrium, its crank under a sampled PD with an integral."""
+    q = sf.equilibrium(sf.compile(FOUR_BAR), [-1.5, 1.5, -1.5]).q
+    diagram = plant(FOUR_BAR, {}, "plant.q", "plant.v", u="effort.y")
+    pd = np.array([[-4.0, 0.0, 0.0, -0.5, 0.0, 0.0]])
+    diagram.add(
+        blocks.Constant(name="goal", value=q),
+    )
+    diagram.add(blocks.Sum(name="change", signs="+-"), u1="plant.q", u2="goal.y")
+    diagram.add(blocks.Join(name="state"), u1="change.y", u2="plant.v")
+    diagram.add(blocks.Gain(name="law", gain=pd, period=0.05), u="state.y")
+    diagram.add(blocks.Integrator(name="sum", start=[0.0], period=0.05), u="law.y")
+    diagram.add(blocks.Sum(name="effort", signs="+++"), u1="law.y", u2="sum.y")
+    diagram.add_inlet("push", "effort.u3", shape=(1,))
+    diagram.outlets |= {"law_y": "law.y", "sum_y": "sum.y"}
+    return diagram, {"plant.q": q}, 0.05
+
+
+@pytest.mark.parametrize("case", [several_rates, on_constraints])
+def test_sampled_control_of_a_plant_is_that_of_its_runs(case: Any) -> None:
+    """Outlets at the beginnings of three cycles, by each continuous state and inlet, by central differences of runs."""
+    diagram, at, period = case()
+    simulation = sf.Simulation(diagram)
+    found = simulation.state_space(starts=at)
+    assert found.period == period and np.abs(found.rates).max() < 1e-10
+    model = sf.compile(simulation.resolved.diagram.models["plant"].system)
+    nq, step, chosen = model.nq, 1e-4, {"method": "dop853", "rtol": 1e-11, "atol": 1e-13}
+
+    def outlets(change: Any, push: float) -> np.ndarray:
+        q, v = np.asarray(at.get("plant.q", np.zeros(nq))) + change[:nq], change[nq : 2 * nq]
+        if model.nc:
+            on = sf.assemble(model, q, v=v)
+            q, v = on.q, on.v
+        starts = {"plant.q": q, "plant.v": v}
+        run = simulation.run(2.0 * period, inputs={"push": push}, starts=starts, output=period, **chosen)
+        return np.hstack([run[f"{source[0]}.{source[1]}"].reshape(3, -1) for source in ends])
+
+    ends = [tuple(name.rsplit("_", 1)) if name.endswith("_y") else ("plant", name[-1]) for name in diagram.outlets]
+    X, moving = np.eye(len(found.A)), [k for k in range(len(found.A)) if np.any(found.basis[: 2 * nq, k])]
+    for k in moving:
+        change = step * found.basis[: 2 * nq, k]
+        differences = (outlets(change, 0.0) - outlets(-change, 0.0)) / (2.0 * step)
+        x = X[k]
+        for row in differences:
+            assert np.abs(row - found.C @ x).max() < 3e-6 * max(1.0, np.abs(row).max())
+            x = found.A @ x
+    x, none = np.zeros(len(found.A)), np.zeros(2 * nq)
+    for row in (outlets(none, step) - outlets(none, -step)) / (2.0 * step):
+        assert np.abs(row - found.C @ x - found.D[:, 0]).max() < 3e-6 * max(1.0, np.abs(row).max())
+        x = found.A @ x + found.B[:, 0]
+
+
 def scalar(block: sf.blocks.Block, start: float = 0.0) -> sf.Diagram:
     """x' = f(x) + w of a block f, and its output."""
     diagram = sf.Diagram("scalar")
@@ -266,11 +365,13 @@ def test_what_has_no_linear_model_is_refused_with_its_remedy() -> None:
         with pytest.raises(sf.SymofrosError, match=r"no linear model[\s\S]*found:[\s\S]*" + words):
             sf.Simulation(diagram).state_space()
 
-    refused(held(period=1e-3), r"block 'pd' is sampled, each 0\.001 s[\s\S]*leave out the period of 'pd'")
-    refused(controller(0.02), r"periods 0\.01 s, 0\.02 s[\s\S]*one period and one offset")
+    refused(
+        held(period=1e-3), r"the state moves while samples hold: 'plant\.dq2' by 0\.488 in 0\.001 s[\s\S]*equilibrium"
+    )
     spoken = sf.Diagram("spoken")
     spoken.add_inlet("x", "echo.x", shape=())
     spoken.add(Spoken(name="echo", heard=[], period=1e-3))
+    spoken.outlets["y"] = "echo.y"
     refused(spoken, "block 'echo' is no formula")
 
 
@@ -293,3 +394,49 @@ def test_samples_that_nothing_depends_on_count_for_nothing() -> None:
 def test_invalid_arguments_are_refused(given: dict[str, Any], error: type[Exception], message: str) -> None:
     with pytest.raises(error, match=message):
         sf.Simulation(held()).state_space(**given)
+
+
+@dataclass(frozen=True, kw_only=True)
+class Wrapped(blocks.Gain):
+    """An angle, 0 to a whole turn."""
+
+    def compute(self, context: EvaluationContext) -> Values:
+        u, turn = context.inputs["u"], context.parameters["gain"]
+        return {"y": u - turn * (u / turn).apply("floor")}
+
+
+@pytest.mark.parametrize("period", [None, 0.1])
+def test_what_rounds_has_no_linear_model(period: float | None) -> None:
+    """Its derivative is zero everywhere, though its output follows the input."""
+    diagram = scalar(blocks.Quantizer(name="f", step=0.01, period=period))
+    with pytest.raises(
+        sf.SymofrosError, match=r"no linear model[\s\S]*block 'f' rounds what it gives[\s\S]*a gain of 1"
+    ):
+        sf.Simulation(diagram).state_space(starts={"x.x": 0.333})
+    wrapped = sf.Simulation(scalar(Wrapped(name="f", gain=6.0, period=period))).state_space(starts={"x.x": 1.0})
+    assert abs(wrapped.C[0, 0] - 1.0) < 1e-12
+
+
+def test_rounding_that_states_and_inlets_do_not_reach_counts_for_nothing() -> None:
+    diagram = scalar(blocks.Gain(name="f", gain=-2.0))
+    diagram.add(blocks.Sine(name="wave"))
+    diagram.add(blocks.Quantizer(name="steps", step=0.01), u="wave.y")
+    diagram.add(blocks.Quantizer(name="shown", step=0.01), u="x.y")  # Nothing reads it.
+    diagram.add(blocks.Sum(name="both"), u1="f.y", u2="steps.y")
+    diagram.outlets["both_"] = "both.y"
+    found = sf.Simulation(diagram).state_space(t=0.3)
+    assert found.A[0, 0] == -2.0 and np.array_equal(found.C, [[-2.0], [-2.0]])
+
+
+def test_modes_and_random_numbers_are_no_states() -> None:
+    """Whether a relay is on, and where a generator is, stays as it is; the generator's own factor is no pole."""
+    diagram = sf.Diagram("modes")
+    diagram.add_inlet("e", "sum.u1", shape=())
+    diagram.add(blocks.Noise(name="noise", scale=0.1, period=0.01, seed=3))
+    diagram.add(blocks.Sum(name="sum"), u2="noise.y")
+    diagram.add(blocks.Integrator(name="x", period=0.01), u="sum.y")
+    diagram.add(blocks.Relay(name="relay", lower=-5.0, upper=5.0, period=0.01), u="x.y")
+    diagram.add(blocks.Sum(name="out"), u1="relay.y", u2="x.y")
+    diagram.outlets["y"] = "out.y"
+    found = sf.Simulation(diagram).state_space()
+    assert found.states == ("x.x",) and found.A[0, 0] == 1.0 and found.C[0, 0] == 1.0

@@ -83,7 +83,13 @@ def judge_order(
 
 
 def scaled(assembly: Assembly, states: States, eps: float) -> States:
-    """The states with elastic coordinates and speeds times a factor."""
+    """The states with elastic coordinates and speeds times a factor.
+
+    Args:
+        assembly: The model as numbers.
+        states: The states.
+        eps: The factor.
+    """
     q, v = states.q.copy(), states.v.copy()
     for mover in assembly.movers:
         if mover.kind == "elastic":

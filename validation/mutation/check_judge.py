@@ -76,7 +76,11 @@ def subject(name: str) -> Subject:
 
 
 def judge(module: str) -> dict[str, Any]:
-    """Whether `check` sees the fault that is planted in this process's package."""
+    """Whether `check` sees the fault that is planted in this process's package.
+
+    Args:
+        module: Where the fault is.
+    """
     warnings.simplefilter("ignore")
     others = tuple(name for name in ROUTES if name != "interpreted")
 

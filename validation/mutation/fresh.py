@@ -45,7 +45,12 @@ class Fresh:
         self._begins: dict[str, list[int]] = {}
 
     def has(self, fault: SourceFault, text: str) -> bool:
-        """Whether a fault is planted in new code."""
+        """Whether a fault is planted in new code.
+
+        Args:
+            fault: Fault.
+            text: Text of its file.
+        """
         if fault.module not in self._begins:
             self._begins[fault.module] = self._new_tokens(text)
         begins = self._begins[fault.module]

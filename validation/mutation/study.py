@@ -104,7 +104,9 @@ def argued_faults(file: Path = _ARGUED) -> dict[str, str]:
     if gone:
         rule = "an argued fault is one of a module that there is"
         raise sf.SymofrosError(
-            f"{file.name}: no such module", "; ".join(gone), rule, "name the present one, or remove the fault"
+            sf.Problem(
+                f"{file.name}: no such module", "; ".join(gone), rule, "name the present one, or remove the fault"
+            )
         )
     return argued
 

@@ -18,11 +18,12 @@ class MomentumObserver(Block):
     """r = K (p - s), s' = F + ad_v^T p + r: forces that a model does not know, a first-order filter of rate K behind.
 
     p = M v is the momentum, F + ad_v^T p its rate by the model (docs/theory/diagrams.md, (8)). No acceleration
-    is asked for. Sampled, s takes a step of Euler's a sample.
+    is asked for. Sampled, r is that filter of the mean force over each period, whatever K is; the rate by the model is
+    that at the beginning of the period (8a).
 
     Attributes:
         model: The model, a tree; its first state is where it begins.
-        gain: K, one number or one a speed (nv) [1/s]; sampled, below 1 over the period.
+        gain: K, one number or one a speed (nv), above zero [1/s].
     """
 
     model: str
@@ -30,12 +31,9 @@ class MomentumObserver(Block):
     tunable: ClassVar[tuple[str, ...]] = ("gain",)
 
     def __post_init__(self) -> None:
-        """Gains above zero, that a sampled observer bears."""
-        most = 1.0 / self.period if self.period else np.inf
-        gains = numbers(self.name, "gain", self.gain)
-        if np.min(gains, initial=np.inf) <= 0.0 or np.max(gains, initial=0.0) > most:
-            rule = f"above zero{f', at most {most:g} at this period' if self.period else ''}"
-            raise refuse(self.name, "gain is out of bounds", self.gain, rule, "choose another")
+        """Gains above zero."""
+        if np.min(numbers(self.name, "gain", self.gain), initial=np.inf) <= 0.0:
+            raise refuse(self.name, "gain is out of bounds", self.gain, "above zero", "choose another")
 
     def ports(self, environment: Environment) -> Ports:
         """Motion q, v and inputs u (the model's defaults where nothing is connected) in; r (nv) out."""
@@ -78,9 +76,10 @@ class MomentumObserver(Block):
         """R (nv), and the rate of the momentum that the model knows of (nv)."""
         given = {name: context.inputs[name] for name in ("q", "v", "u")}
         of = context.call(self.model, "momentum", t=context.t, **given)
-        s = (context.states if self.period is None else context.memory)["s"]
-        known = of["F"] + _turning(context, self.model, of["p"])
-        return context.parameters["gain"] * (of["p"] - s), known
+        gain, s = context.parameters["gain"], (context.states if self.period is None else context.memory)["s"]
+        if self.period is not None:
+            gain = (1.0 - (-self.period * gain).apply("exp")) / self.period
+        return gain * (of["p"] - s), of["F"] + _turning(context, self.model, of["p"])
 
 
 def _turning(context: EvaluationContext, model: str, p: Tensor) -> Tensor:

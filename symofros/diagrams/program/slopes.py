@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from collections.abc import Iterator, Mapping, Sequence
+from collections.abc import Collection, Iterator, Mapping, Sequence
 from dataclasses import dataclass, replace
 
 import numpy as np
@@ -10,10 +10,22 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.diagrams.program.compiled import Resolved, fuser
 from symofros.diagrams.program.layout import Part
-from symofros.diagrams.program.lowered_block import Piece, watched
+from symofros.diagrams.program.lowered_block import MEMORY, PARAMETER, Piece, watched
 from symofros.diagrams.program.point import Point, read_slots
+from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Source
-from symofros.expr import Edge, Function, InstantKind, Output, Program, instant_operands, partials
+from symofros.expr import (
+    ZERO,
+    Edge,
+    Function,
+    InstantKind,
+    Output,
+    Program,
+    Slot,
+    instant_operands,
+    needed_nodes,
+    partials,
+)
 from symofros.generator import InterpretedUnit, run_passes
 
 # What the functions read; "gains" of conditions are zero: what is held exactly needs none.
@@ -96,24 +108,78 @@ def _rows(matrix: Output) -> list[tuple[Edge, ...]]:
     return [matrix.edges[i * n : (i + 1) * n] for i in range(matrix.shape[0])]
 
 
-def slopes_of_outputs(
-    resolved: Resolved, sources: Mapping[str, Source], inlets: Sequence[int], due: frozenset[str] = frozenset()
-) -> Slopes:
-    """Of signals, by name; those of sampled blocks that are due are new ones, those of others are held."""
-    at, program = _point(resolved, due)
+def slopes_of_outputs(resolved: Resolved, sources: Mapping[str, Source], inlets: Sequence[int]) -> Slopes:
+    """Of signals, by name; those of sampled blocks are held."""
+    at, program = _point(resolved)
     return Slopes.of(program, {name: at.signal(source).flat for name, source in sources.items()}, inlets)
 
 
-def slopes_of_memory(resolved: Resolved, due: frozenset[str], varied: Sequence[int]) -> Slopes:
-    """Of what sampled blocks remember after a sample, by block and name."""
+def slopes_of_samples(
+    resolved: Resolved, due: frozenset[str], memory: Collection[tuple[str, str]], varied: Sequence[int]
+) -> Slopes:
+    """Of what sampled blocks that are due give, then of what is kept in some of their memory, by block and name."""
     at, program = _point(resolved, due)
     rows = {
-        f"{block}.{key}": at.write(piece, value).flat
-        for block, piece in resolved.pieces.items()
-        if block in due
-        for key, value in piece.updates.items()
+        f"{block}.{port} held": at.signal((block, port)).flat for block, port in resolved.layout.held if block in due
     }
+    for block, key in memory:
+        if block in due:
+            rows[f"{block}.{key}"] = at.write(resolved.pieces[block], resolved.pieces[block].updates[key]).flat
     return Slopes.of(program, rows, varied)
+
+
+def entries_of_samples(resolved: Resolved) -> dict[str, frozenset[int]]:
+    """Sampled block -> entries of u that its new outputs and memory depend on, those of others held."""
+    at, _ = _point(resolved)
+    found = {}
+    for block, piece in resolved.pieces.items():
+        if piece.is_discrete:
+            edges = [
+                edge for values in (piece.outputs, piece.updates) for value in values.values() for edge in value.flat
+            ]
+            slots = read_slots(at.g, at.edges(piece, edges))
+            found[block] = frozenset(slot.index for slot in slots if slot.group == "u")
+    return found
+
+
+def is_constant_between_steps(piece: Piece, value: Tensor) -> bool:
+    """Whether a value of a block has no slope by what comes in or moves, but steps or none: a mode, or rounded."""
+    moving = [piece.g.input(slot.group, slot.index) for slot in piece.g.slot.values() if _moves(slot)]
+    if any(edge != ZERO for row in partials(piece.g, value.flat, moving) for edge in row):
+        return False
+    nodes = needed_nodes(piece.g, value.flat)
+    return not nodes or any(piece.g.op[node] in ("floor", "step", "sign") for node in nodes)
+
+
+def _moves(slot: Slot) -> bool:
+    return slot.group != "t" and not slot.group.startswith((MEMORY, PARAMETER))
+
+
+def rounded(
+    resolved: Resolved, sources: Mapping[str, Source], counted: Collection[str], varied: Collection[int]
+) -> Iterator[str]:
+    """Blocks of which rates, outlets or counted samples read outputs that are rounded states or inlets."""
+    at, _ = _point(resolved, frozenset(counted))
+    values = [at.signal(source) for source in sources.values()]
+    for name, piece in resolved.pieces.items():
+        after = (
+            piece.updates if name in counted else {} if piece.is_discrete else {**piece.rates, **piece.terms.stated()}
+        )
+        values += [at.write(piece, value) for value in after.values()]
+    ends = [edge for value in values for edge in value.flat]
+    read = {*map(abs, ends), *(abs(arg) for node in needed_nodes(at.g, ends) for arg in at.g.args[node])}
+    for name, port in resolved.order:
+        piece = resolved.pieces[name]
+        if piece.is_external or port not in piece.outputs or (piece.is_discrete and name not in counted):
+            continue
+        within = [piece.g.op[node] for node in needed_nodes(piece.g, piece.outputs[port].flat)]
+        if "floor" in within and is_constant_between_steps(piece, piece.outputs[port]):
+            edges = at.signal((name, port)).flat
+            slots = read_slots(at.g, edges)
+            if not read.isdisjoint(map(abs, edges)) and any(
+                slot.group in ("q", "v", "a", "lam") or (slot.group == "u" and slot.index in varied) for slot in slots
+            ):
+                yield name
 
 
 def slopes_of_switches(resolved: Resolved, inlets: Sequence[int], due: frozenset[str] = frozenset()) -> Slopes:
@@ -142,7 +208,7 @@ def _switches(resolved: Resolved, counted: Mapping[str, Piece], at: Point) -> It
         yield f"{block}.{which}", at.edges(counted[block], counted[block].crossings[which].value.flat)
 
 
-def _point(resolved: Resolved, due: frozenset[str]) -> tuple[Point, Program]:
+def _point(resolved: Resolved, due: frozenset[str] = frozenset()) -> tuple[Point, Program]:
     """A point of the whole diagram, and a program that is to have its functions."""
     program = fuser(resolved).signals([])
     at = Point(resolved.wired, resolved.pieces, resolved.layout, resolved.order, program.graph, due, after=True)

@@ -16,7 +16,7 @@ from symofros.diagrams.program.point import AFTER
 from symofros.diagrams.run.parts import place_parts
 from symofros.diagrams.run.starts import Start
 from symofros.diagrams.run.values import parameter_values, part_settings
-from symofros.errors import ShapeError, UnknownNameError, did_you_mean
+from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.manifold import retract
 from symofros.simulation.analysis.sliding import contact_dynamics
 from symofros.simulation.inputs import held_sample
@@ -35,7 +35,7 @@ class OperatingPoint:
         a: Accelerations (nv), and `lam` multipliers (nc), of parts with constraints.
         lam: Multipliers of the constraints (nc).
         par: Run-time parameters (npar).
-        varied: Entries of u that vary: the inlets; of a sampled diagram its memory before them.
+        varied: Entries of u that vary: the inlets; before them what sampled blocks hold and remember.
     """
 
     t: float
@@ -67,11 +67,11 @@ class OperatingPoint:
             if name not in inlets:
                 what, rule = f"state_space: no inlet '{name}'", f"inlets: {', '.join(inlets) or 'none'}"
                 remedy = did_you_mean(name, inlets) or "leave it out"
-                raise UnknownNameError(what, f"'{name}'", rule, remedy)
+                raise UnknownNameError(Problem(what, f"'{name}'", rule, remedy))
             array, place = numeric(f"inlet '{name}'", value), inlets[name]
             if array.shape not in ((), place.shape):
                 what, rule = f"state_space: inlet '{name}' does not fit", f"numbers of shape {place.shape}"
-                raise ShapeError(what, str(array.shape), rule, "give it that shape")
+                raise ShapeError(Problem(what, str(array.shape), rule, "give it that shape"))
             begin.u[place.slice] = array.reshape(-1)
         options = SimulationOptions(t0=t)
         placed = place_parts(compiled, lambda model: part_settings(options, model, t + 1.0), par, begin)
@@ -83,13 +83,14 @@ class OperatingPoint:
         point = cls(t, q, v, begin.u, a, lam, par, entries)
         kernel = compiled.instants.kernels.get(("begun", ""))
         if kernel is not None:
-            point._accelerate(compiled)
+            point.accelerate(compiled)
             groups = [point.named[group].reshape(1, -1) for group in AFTER]
             point.u[:] = kernel.run(1, kernel.prepare(par.reshape(1, -1)), groups)[0][0]
-        point._accelerate(compiled)
+        point.accelerate(compiled)
         return point
 
-    def _accelerate(self, compiled: CompiledDiagram) -> None:
+    def accelerate(self, compiled: CompiledDiagram) -> None:
+        """Set (a, lam) of parts with constraints by the rest."""
         for part, model in zip(compiled.resolved.layout.parts, compiled.parts, strict=True):
             if model.nc:
                 states = np.array([self.t]), self.q[None, part.q], self.v[None, part.v], self.u[None]

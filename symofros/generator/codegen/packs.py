@@ -70,7 +70,11 @@ class Vector:
         return f"sym_lane({vector_name(self.key)}, {lane})"
 
     def lines(self, text: Callable[[Edge], str]) -> list[str]:
-        """The lines that define it."""
+        """The lines that define it.
+
+        Args:
+            text: Text of a scalar edge.
+        """
         name = vector_name(self.key)
         if self.terms:
             start = _sum(self.terms, text)
@@ -251,7 +255,12 @@ def _sum(terms: Sequence[tuple[Edge, Vector]], text: Callable[[Edge], str]) -> s
 
 
 def runs_of_lanes(vector: Vector, stores: Sequence[Store]) -> tuple[list[str], list[Store]]:
-    """Lines that store neighbouring lanes into neighbouring entries, and the stores that remain."""
+    """Lines that store neighbouring lanes into neighbouring entries, and the stores that remain.
+
+    Args:
+        vector: Vector to be stored.
+        stores: Stores of its lanes.
+    """
     lines: list[str] = []
     remaining: list[Store] = []
     run: list[_LaneStore] = []

@@ -65,9 +65,23 @@ def test_a_sampled_observer_follows_it() -> None:
     assert np.abs(run["seen.r"] - filtered(tau)).max() < 3.0 * _RATE * _STEP * np.abs(tau).max()
 
 
+@pytest.mark.parametrize("gain", [4.0, 90.0, 3000.0])
+def test_a_sampled_observer_is_the_filter_of_a_force_that_stays(gain: float) -> None:
+    """r[k] = f (1 - exp(-K T k)) on a mass that nothing else moves, at gains beyond 1 / T, too."""
+    slide = sf.RigidBody("mass", sf.Joint("x", "prismatic", axis=(1.0, 0.0, 0.0), actuated=True), sf.Inertia(2.0))
+    diagram, T = sf.Diagram("felt"), 0.01
+    diagram.add_model("m", sf.System("slider", (slide,), gravity=(0.0, 0.0, 0.0)))
+    diagram.add(Constant(name="push", value=[0.7]))
+    diagram.add(Constant(name="known", value=[0.0]))
+    diagram.add(ForwardDynamics(name="plant", model="m"), u="push.y")
+    diagram.add(MomentumObserver(name="seen", model="m", gain=gain, period=T), q="plant.q", v="plant.v", u="known.y")
+    run = sf.Simulation(diagram).run(0.2, record=T)
+    assert np.abs(run["seen.r"][:, 0] - 0.7 * (1.0 - np.exp(-gain * run.t))).max() < 1e-9
+
+
 def test_unsuitable_gains_and_mechanisms_of_observers_are_refused() -> None:
     with pytest.raises(sf.DescriptionError, match="gain is out of bounds"):
-        MomentumObserver(name="o", model="m", gain=2000.0, period=1e-3)
+        MomentumObserver(name="o", model="m", gain=-20.0, period=1e-3)
     diagram = sf.Diagram("bars")
     diagram.add_model("m", MODELS["four_bar"])
     diagram.add(ForwardDynamics(name="plant", model="m"))

@@ -56,6 +56,11 @@ class Storage:
     def __init__(self, workspace: Workspace, file: Path | None, revision: int = 1) -> None:
         """Open a file; begin it if it is not there; None: begin one without a name.
 
+        Args:
+            workspace: Folder that the file is in.
+            file: File to open.
+            revision: Revision that its document begins with.
+
         Raises:
             FileError: It can't be read.
         """
@@ -101,7 +106,9 @@ class Storage:
         if file.exists() or not file.parent.is_dir():
             obstacle = "a file of that name" if file.exists() else "no such folder"
             raise FileError(
-                f"'{file.name}' can't be begun", obstacle, "a new file has a name of its own", "choose another name"
+                Problem(
+                    f"'{file.name}' can't be begun", obstacle, "a new file has a name of its own", "choose another name"
+                )
             )
         self.begin(file, kind)
 
@@ -141,7 +148,7 @@ class Storage:
             file = self.workspace.root / f"{stem}{n if n > 1 else ''}.yaml"
             if not file.exists() and (stem == "untitled" or not autosave_of(file).exists()):
                 return file
-        raise FileError("no free name", f"999 files '{stem}'", "a document has a file name", "give one")
+        raise FileError(Problem("no free name", f"999 files '{stem}'", "a document has a file name", "give one"))
 
     # While it is open.
 
@@ -269,8 +276,10 @@ class Storage:
         if found is None or found.text == self.document.text:
             return
         raise FileError(
-            f"'{file.name}' has unsaved work of its own",
-            f"'{autosave_of(file).name}'",
-            "a document is saved over no unsaved work on another file",
-            f"choose another name, or open '{file.name}' and save or discard that work",
+            Problem(
+                f"'{file.name}' has unsaved work of its own",
+                f"'{autosave_of(file).name}'",
+                "a document is saved over no unsaved work on another file",
+                f"choose another name, or open '{file.name}' and save or discard that work",
+            )
         )
