@@ -5,6 +5,7 @@ from pathlib import Path
 
 from setuptools import Distribution, setup
 from setuptools.command.bdist_wheel import bdist_wheel
+from setuptools.command.build_py import build_py
 
 # Folder of the repository -> the name that it is installed under; everything else is in pyproject.toml.
 INSTALLED = {
@@ -13,6 +14,8 @@ INSTALLED = {
     "reference_models": "symofros.reference_models",
 }
 FOLDERS = sorted({path.parent for name in INSTALLED for path in Path(name).rglob("*.py")})
+# Pages that the editor's windows show; the programs that make a site of them stay behind.
+DOCS = "symofros.docs"
 # Made by .ci/prebuild.py, for machines without a C compiler.
 LIBRARIES = sorted(Path("symofros/native/prebuilt").glob("*.so"))
 
@@ -33,9 +36,17 @@ class Wheel(bdist_wheel):
         return "py3", "none", f"manylinux_2_17_{platform.machine()}" if LIBRARIES else "any"
 
 
+class Modules(build_py):
+    """Modules of all packages but the documentation."""
+
+    def find_package_modules(self, package: str, package_dir: str) -> list[tuple[str, str, str]]:
+        """Package, name and file of each module."""
+        return [] if package == DOCS else super().find_package_modules(package, package_dir)
+
+
 setup(
-    package_dir={name: folder for folder, name in INSTALLED.items()},
-    packages=[".".join((INSTALLED[top], *below)) for top, *below in (folder.parts for folder in FOLDERS)],
+    package_dir={name: folder for folder, name in INSTALLED.items()} | {DOCS: "docs"},
+    packages=[".".join((INSTALLED[top], *below)) for top, *below in (folder.parts for folder in FOLDERS)] + [DOCS],
     distclass=Libraries,
-    cmdclass={"bdist_wheel": Wheel},
+    cmdclass={"bdist_wheel": Wheel, "build_py": Modules},
 )

@@ -132,7 +132,7 @@ class Compilation:
             elif isinstance(system, Model):
                 remedy = "give the sf.System that the model was compiled from"
             stated = f"{type(system).__name__} {system!r:.60}"
-            raise DescriptionError(Problem("there is no system to compile", stated, "a system is a sf.System", remedy))
+            raise DescriptionError("there is no system to compile", stated, "a system is a sf.System", remedy)
         check_argument("options", options, Options | None)
         self.system, self._stated = system, options or Options()
         # Of the stages, none depends on when C is compiled.

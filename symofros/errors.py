@@ -158,12 +158,26 @@ class SymofrosError(Exception):
     """The base of everything this package raises on purpose; the message is the text of the problems it carries.
 
     Args:
-        problems: One problem, or several; a text that has no parts stands for a problem that only names the object.
+        problems: What is wrong, with the further parts of a `Problem` behind it; or a problem, or several.
+        found: State found instead.
+        rule: Rule that must hold.
+        remedy: Remedy: the change to make.
+        where: "file:line", or "" for an object built in Python.
+        argument: Argument of `load` that the remedy states as it is written in Python.
     """
 
-    def __init__(self, problems: Sequence[Problem] | Problem | str) -> None:
-        stated = Problem(problems) if isinstance(problems, str) else problems
-        self.problems: tuple[Problem, ...] = (stated,) if isinstance(stated, Problem) else tuple(stated)
+    def __init__(
+        self,
+        problems: Sequence[Problem] | Problem | str,
+        found: str = "",
+        rule: str = "",
+        remedy: str = "",
+        where: str = "",
+        argument: Argument | None = None,
+    ) -> None:
+        if isinstance(problems, str):
+            problems = Problem(problems, found, rule, remedy, where, argument)
+        self.problems: tuple[Problem, ...] = (problems,) if isinstance(problems, Problem) else tuple(problems)
         super().__init__(listed(self.problems))
 
     @property

@@ -63,12 +63,10 @@ def package_name(package: str = _HARNESS) -> str:
     if mapped is not None and _is_at(mapped.origin, folder):
         return installed
     raise SymofrosError(
-        Problem(
-            f"the package '{package}' of a checkout can't be imported",
-            f"{folder} is not on the path of this process" if beside is None else f"{beside.origin} comes before it",
-            f"a process finds it as '{package}' by its path, or as '{installed}' by an installation",
-            f"pip install -e {folder.parent}",
-        )
+        f"the package '{package}' of a checkout can't be imported",
+        f"{folder} is not on the path of this process" if beside is None else f"{beside.origin} comes before it",
+        f"a process finds it as '{package}' by its path, or as '{installed}' by an installation",
+        f"pip install -e {folder.parent}",
     )
 
 

@@ -143,12 +143,10 @@ def check_waivers(waive: Collection[str]) -> None:
     """
     for unknown in sorted(set(waive) - WAIVERS.keys()):
         raise DescriptionError(
-            Problem(
-                f"waive: no check '{unknown}'",
-                f"'{unknown}'",
-                f"one of {', '.join(WAIVERS)}",
-                did_you_mean(unknown, WAIVERS),
-            )
+            f"waive: no check '{unknown}'",
+            f"'{unknown}'",
+            f"one of {', '.join(WAIVERS)}",
+            did_you_mean(unknown, WAIVERS),
         )
 
 
@@ -217,7 +215,7 @@ def _refuse_idle(file: Path, suffix: str, asked: Asked) -> None:
             rule = "other descriptions state it themselves, or have no such thing"
             argument = Argument(name, key="NAME" if name in ("arguments", "packages") else "")
             what = f"{name} applies to {formats} files only"
-            raise DescriptionError(Problem(what, f"'{file}'", rule, remedy, argument=argument))
+            raise DescriptionError(what, f"'{file}'", rule, remedy, argument=argument)
 
 
 @checked
@@ -250,12 +248,10 @@ _CONVERSIONS = {
 def _refuse_suffix(file: Path, known: tuple[str, ...], verb: str) -> None:
     if file.suffix.lower() not in known:
         raise DescriptionError(
-            Problem(
-                f"'{file}' can't be {verb}: unknown format",
-                file.suffix or "no suffix",
-                f"the suffix is one of {', '.join(known)}",
-                _CONVERSIONS.get(file.suffix.lower()) or _meant(file.suffix.lower(), known),
-            )
+            f"'{file}' can't be {verb}: unknown format",
+            file.suffix or "no suffix",
+            f"the suffix is one of {', '.join(known)}",
+            _CONVERSIONS.get(file.suffix.lower()) or _meant(file.suffix.lower(), known),
         )
 
 

@@ -15,7 +15,7 @@ from typing import Any, Literal, Union, get_args, get_origin, get_type_hints
 
 import numpy as np
 
-from symofros.errors import ArgumentError, Problem, did_you_mean
+from symofros.errors import ArgumentError, did_you_mean
 
 # Name of a class -> how to get an object of it.
 _MAKERS = {
@@ -92,7 +92,7 @@ def refusal(what: str, value: object, kind: Kind) -> ArgumentError:
     if entry is not None:
         name, part, wanted = entry
         return refusal(f"{what}{name}", part, wanted)
-    return ArgumentError(Problem(f"{what} is not {kind.noun}", shown(value), f"it is {kind.noun}", kind.remedy(value)))
+    return ArgumentError(f"{what} is not {kind.noun}", shown(value), f"it is {kind.noun}", kind.remedy(value))
 
 
 @cache

@@ -18,7 +18,7 @@ import numpy as np
 from symofros.base.annotations import check_argument as check_argument
 from symofros.base.annotations import kinds_of, refusal
 from symofros.base.annotations import shown as shown
-from symofros.errors import ArgumentError, Problem, did_you_mean
+from symofros.errors import ArgumentError, did_you_mean
 
 _Parameters = ParamSpec("_Parameters")
 _Result = TypeVar("_Result")
@@ -173,4 +173,4 @@ def _misfit(name: str, signature: inspect.Signature, fault: str, given: Mapping[
     remedy = did_you_mean(unknown[0], known) if unknown else "give what it takes, by name"
     fault = f"got an unexpected keyword argument '{unknown[0]}'" if unknown else fault
     takes = f"it takes {', '.join(known)}{', and options by name' * open_ended}"
-    return ArgumentError(Problem(f"{name}: the arguments do not fit", fault, takes, remedy))
+    return ArgumentError(f"{name}: the arguments do not fit", fault, takes, remedy)

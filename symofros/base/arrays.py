@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 from numpy.typing import ArrayLike
 
-from symofros.errors import Problem, ShapeError
+from symofros.errors import ShapeError
 
 Array = npt.NDArray[np.float64]
 Mask = npt.NDArray[np.bool_]
@@ -22,10 +22,6 @@ def real_array(values: ArrayLike | None, dtype: npt.DTypeLike = np.float64) -> n
     """The values as an array of real numbers; None where some are not: texts, dates, masked ones, ...
 
     NumPy would read texts and dates, make NaN of None, and drop imaginary parts and masks.
-
-    Args:
-        values: Values.
-        dtype: Type of the array's numbers.
     """
     try:
         if _is_masked(values):
@@ -47,22 +43,16 @@ def _is_masked(values: Any) -> bool:
 def numeric(what: str, values: ArrayLike) -> Array:
     """The values as a new array of real numbers of any shape.
 
-    Args:
-        what: Name of the values in the message.
-        values: Values.
-
     Raises:
         ShapeError: Some are no real numbers.
     """
     array = real_array(values)
     if array is None:
         raise ShapeError(
-            Problem(
-                f"{what} is not an array of numbers",
-                f"{type(values).__name__} {values!r:.60}",
-                f"{what} is an array of real numbers",
-                "convert texts, dates and complex numbers, fill in masked ones before",
-            )
+            f"{what} is not an array of numbers",
+            f"{type(values).__name__} {values!r:.60}",
+            f"{what} is an array of real numbers",
+            "convert texts, dates and complex numbers, fill in masked ones before",
         )
     return np.array(array)
 
@@ -70,18 +60,13 @@ def numeric(what: str, values: ArrayLike) -> Array:
 def vector(what: str, values: ArrayLike, size: int) -> Array:
     """The values as a new array (size) of real numbers.
 
-    Args:
-        what: Name of the values in the message.
-        values: Values.
-        size: Number of them.
-
     Raises:
         ShapeError: They are no numbers, or another number of them.
     """
     array = numeric(what, values)
     if array.shape != (size,):
         rule = f"{what} has shape ({size},): one state, no batch"
-        raise ShapeError(Problem(f"{what} has the wrong shape", str(array.shape), rule, f"give {size} numbers"))
+        raise ShapeError(f"{what} has the wrong shape", str(array.shape), rule, f"give {size} numbers")
     return array
 
 

@@ -8,7 +8,7 @@ from typing import Any, Literal, NamedTuple
 
 from symofros.base.arguments import CheckedCalls, check_fields
 from symofros.base.names import coordinate_of, speed_column, speed_of
-from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.errors import SymofrosError, UnknownNameError, did_you_mean
 
 _SIGNS = {"both": 0, "rising": 1, "falling": -1}
 
@@ -53,7 +53,7 @@ class Event(metaclass=CheckedCalls):
         if self.restitution is not None and not (self.action and 0.0 <= self.restitution <= 1.0):
             found = f"restitution = {self.restitution}, action = {self.action!r:.60}"
             rule = "restitution is a number from 0 to 1, of an action that engages what strikes"
-            raise SymofrosError(Problem("event: no restitution", found, rule, "action={'contact': 1}, restitution=0.8"))
+            raise SymofrosError("event: no restitution", found, rule, "action={'contact': 1}, restitution=0.8")
         if self.rests is not None:
             self._check_contact()
 
@@ -65,7 +65,7 @@ class Event(metaclass=CheckedCalls):
             found = f"direction = '{self.direction}', action = {self.action!r:.60}, restitution = {self.restitution}"
             rule = "a contact that rests is engaged by one parameter set to 1, again and again, from one side"
             remedy = "Event('gap', 'falling', action={'contact': 1}, restitution=0.5, rests='lam.floor.z')"
-            raise SymofrosError(Problem("event: no contact that rests", found, rule, remedy))
+            raise SymofrosError("event: no contact that rests", found, rule, remedy)
 
     @property
     def sign(self) -> int:
@@ -106,7 +106,7 @@ def with_stated(stated: Mapping[str, Event], given: Mapping[str, Any] | None) ->
     for name in (name for name, event in merged.items() if event is None and name not in stated):
         rule, remedy = "None leaves out an event of the model", did_you_mean(name, stated) or "leave it out"
         found = ", ".join(stated) or "a model without events"
-        raise UnknownNameError(Problem(f"events: no event '{name}' to leave out", found, rule, remedy))
+        raise UnknownNameError(f"events: no event '{name}' to leave out", found, rule, remedy)
     return {name: event for name, event in merged.items() if event is not None}
 
 
@@ -140,13 +140,13 @@ class Named(NamedTuple):
             what, rule = f"event '{event}': its action sets the coordinate '{name}'", "an action moves nothing at once"
             speed = f"its speed, '{speed_column(name, self.q)}'" if name in self.v else "speeds"
             remedy = f"set {speed}, or a parameter"
-            raise UnknownNameError(Problem(what, f"'{name}' among coordinates", rule, remedy))
+            raise UnknownNameError(what, f"'{name}' among coordinates", rule, remedy)
         if found := speed_of(name, self.v):
             return "v", self.v.index(found)
         known = [*self.par, *(speed_column(speed, self.q) for speed in self.v)]
         rule = "an action sets run-time parameters, and speeds: d and the coordinate's name, or the speed's own"
         what = f"event '{event}': its action sets '{name}', which is no parameter or speed"
-        raise UnknownNameError(Problem(what, ", ".join(known[:12]) or "none", rule, did_you_mean(name, known)))
+        raise UnknownNameError(what, ", ".join(known[:12]) or "none", rule, did_you_mean(name, known))
 
     def targets(self, event: str, action: Collection[str]) -> list[tuple[str, int]]:
         """The same of all that an action sets.
@@ -159,7 +159,7 @@ class Named(NamedTuple):
             place = self.target(event, name)
             if place in places:
                 what, rule = f"event '{event}': its action sets '{name}' twice", "one value for each"
-                raise SymofrosError(Problem(what, ", ".join(action), rule, "leave one of them out"))
+                raise SymofrosError(what, ", ".join(action), rule, "leave one of them out")
             places.append(place)
         return places
 
@@ -170,4 +170,4 @@ class Named(NamedTuple):
             what = f"event '{event}': its action sets '{name}'"
             rule = f"'{constraint}' holds the pose of the moment in which it engages"
             remedy = f"set what engages it, '{engaged}'; or give the switch the stated pose"
-            raise SymofrosError(Problem(what, "the pose that a constraint holds", rule, remedy))
+            raise SymofrosError(what, "the pose that a constraint holds", rule, remedy)

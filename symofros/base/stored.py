@@ -143,12 +143,7 @@ def append_line(path: Path, value: Any) -> None:
 
 
 def keep(path: Path, content: str) -> None:
-    """Write a file that only spares work later: where it can't be written, a `StoredStateWarning` says so.
-
-    Args:
-        path: The file, in a folder that exists.
-        content: Its text.
-    """
+    """Write a file that only spares work later: where it can't be written, a `StoredStateWarning` says so."""
     try:
         write_atomically(path, content)
     except OSError as error:

@@ -6,7 +6,7 @@ import math
 import re
 from dataclasses import dataclass
 
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 
 BASE = ("kg", "m", "s", "A", "K", "mol", "cd", "rad")
 _FACTOR = re.compile(r"(?P<name>[A-Za-z%]+)(?:\^?(?P<power>-?\d+))?$")
@@ -70,12 +70,10 @@ def parse(text: str) -> Unit:
         unit = NAMES.get(match["name"]) if match else None
         if match is None or unit is None:
             raise DescriptionError(
-                Problem(
-                    f"unit '{text:.60}'",
-                    f"'{part:.40}'",
-                    f"products of powers of {', '.join(NAMES)}",
-                    "write for example N m, rad/s, kg m^2; leave it out where any unit will do",
-                )
+                f"unit '{text:.60}'",
+                f"'{part:.40}'",
+                f"products of powers of {', '.join(NAMES)}",
+                "write for example N m, rad/s, kg m^2; leave it out where any unit will do",
             )
         power = int(match["power"] or 1)
         product = product * unit ** (-power if inverse else power)

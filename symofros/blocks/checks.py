@@ -10,12 +10,12 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, did_you_mean
 
 
 def refuse(name: str, what: str, found: object, rule: str, remedy: str) -> DescriptionError:
     """An error about a block; texts of any length are cut."""
-    return DescriptionError(Problem(f"block '{name}': {what}", f"{found!s:.120}", rule, remedy))
+    return DescriptionError(f"block '{name}': {what}", f"{found!s:.120}", rule, remedy)
 
 
 def numbers(name: str, field: str, values: Any, shape: Sequence[int | None] | None = None) -> Array:

@@ -12,7 +12,7 @@ from symofros.blocks.quantities import WRENCH, frame_ports, motion_port
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Terms, Values
 from symofros.diagrams.program.variants import FRICTION
 from symofros.diagrams.tensor import Tensor, joined
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, did_you_mean
 from symofros.expr import ZERO
 
 
@@ -30,7 +30,7 @@ class ForwardDynamics(Block):
         events: Events of the mechanism, as `sf.simulate` takes them: name -> formula, or sf.Event with what it sets.
             They come after the model's own; one of the same name stands in its place, and null leaves it out. In place
             of `engaged`, for constraints with switches; inputs are those of `u`.
-        tells: Functions of the model that are outputs, too, at the present motion and parameters, such as
+        functions: Functions of the model that are outputs, too, at the present motion and parameters, such as
             "kinetic_energy", "closure_wrenches", "joint_wrenches", "contact_forces" or "centroidal_momentum": an output
             of that name; where one has several, FUNCTION_OUTPUT each ("contact_forces_gap").
     """
@@ -39,15 +39,15 @@ class ForwardDynamics(Block):
     perturbed: tuple[str, ...] = ()
     engaged: bool = False
     events: Mapping[str, Event | str | None] = field(default_factory=dict)
-    tells: tuple[str, ...] = ()
+    functions: tuple[str, ...] = ()
 
     def __post_init__(self) -> None:
         """Refuse what is no function at a motion."""
-        for name in self.tells:
+        for name in self.functions:
             if name not in OFFERED or OFFERED[name].of_frame:
                 known = [offered for offered, row in OFFERED.items() if not row.of_frame]
                 rule = f"functions of the whole model at a motion: {', '.join(known)}"
-                raise refuse(self.name, f"tells '{name}'", name, rule, did_you_mean(name, known) or "leave it out")
+                raise refuse(self.name, f"function '{name}'", name, rule, did_you_mean(name, known) or "leave it out")
 
     def mechanism(self) -> str:
         """The model."""
@@ -72,12 +72,10 @@ class ForwardDynamics(Block):
         if self.engaged:
             if not names:
                 raise DescriptionError(
-                    Problem(
-                        f"block '{self.name}': nothing to engage",
-                        f"model '{self.model}'",
-                        "engaged belongs to a model with constraints",
-                        "leave it out, or add a closure",
-                    )
+                    f"block '{self.name}': nothing to engage",
+                    f"model '{self.model}'",
+                    "engaged belongs to a model with constraints",
+                    "leave it out, or add a closure",
                 )
             inputs.append(Port("engaged", (len(dict.fromkeys(names)),)))
         outputs = [
@@ -88,7 +86,7 @@ class ForwardDynamics(Block):
         ]
         outputs += [Port("lam", (record.nc,))] if record.nc else []
         outputs += [Port("z", (len(record.state_names),))] if record.state_names else []
-        for function in self.tells:
+        for function in self.functions:
             shown = output_ports(self.name, function, record)
             outputs += [replace(port, name=name) for port, name in zip(shown, _names_of_outputs(function), strict=True)]
         return Ports(tuple(inputs), tuple(outputs))
@@ -147,7 +145,7 @@ class ForwardDynamics(Block):
         signals = {**motion, "friction": friction(context, self.model, motion["q"], motion["v"], **states), **states}
         signals |= {"lam": context.lam} if record.nc else {}
         given = {**motion, **states, "u": context.inputs["u"], "t": context.t}
-        for function in self.tells:
+        for function in self.functions:
             values = output_values(context, self.model, function, "", {**given, "lam": context.lam})
             signals |= {
                 name: values[of.name]

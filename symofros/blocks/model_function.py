@@ -77,11 +77,6 @@ class ModelFunction(Block):
 def output_ports(block: str, function: str, record: ModelRecord) -> tuple[Port, ...]:
     """Ports of the outputs of an offered function.
 
-    Args:
-        block: Name of the block.
-        function: Name of the function.
-        record: Sizes of the model.
-
     Raises:
         DescriptionError: The model has nothing that the function tells of.
     """

@@ -4,7 +4,7 @@ from __future__ import annotations
 
 import threading
 
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 
 
 class Turn:
@@ -21,12 +21,10 @@ class Turn:
         """
         if not self._taken.acquire(blocking=False):
             raise SymofrosError(
-                Problem(
-                    f"block '{block}': its page shows another run",
-                    "two runs at once",
-                    "a page shows one run at a time",
-                    "let the other end first, or give this diagram a block of its own",
-                )
+                f"block '{block}': its page shows another run",
+                "two runs at once",
+                "a page shows one run at a time",
+                "let the other end first, or give this diagram a block of its own",
             )
 
     def leave(self) -> None:

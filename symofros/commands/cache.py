@@ -56,7 +56,7 @@ def cache(
     if pruned.kept:
         what, found = f"'{folder}' keeps files that were to go", f"{len(pruned.kept)} that can't be removed"
         rule = "files go that this user may remove, and no other process has loaded"
-        raise refuse(sf.SymofrosError(sf.Problem(what, found, rule, "check the folder's rights")))
+        raise refuse(sf.SymofrosError(what, found, rule, "check the folder's rights"))
 
 
 def _print_held(stated: dict[str, Any]) -> None:

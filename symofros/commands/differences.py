@@ -35,7 +35,7 @@ def diff(
     paths = [Path(name) for name in files]
     if len(paths) < 2:
         found, remedy = f"'{files[0]}' alone", f"symofros diff {files[0]} other.xml"
-        raise refuse(sf.SymofrosError(sf.Problem("diff: one file", found, "files are compared with the first", remedy)))
+        raise refuse(sf.SymofrosError("diff: one file", found, "files are compared with the first", remedy))
     try:
         used = {name for path in paths for name in reading.fit_for(path).keywords}
         reading.without(used).require_none("none of the files has a use for them")

@@ -128,12 +128,10 @@ def simulate(
         else:
             if picture == diagrams.WINDOW:
                 raise sf.SymofrosError(
-                    sf.Problem(
-                        "--plot window: the file is a model",
-                        str(model),
-                        "windows are of diagrams only, whose plots they show",
-                        "write a picture: --plot run.png",
-                    )
+                    "--plot window: the file is a model",
+                    str(model),
+                    "windows are of diagrams only, whose plots they show",
+                    "write a picture: --plot run.png",
                 )
             viewing.check()
             if output:

@@ -68,7 +68,7 @@ def pairs(given: Iterable[str], what: str, example: str, *, empty: bool = False)
             raise SymofrosError(fault)
         if (name := name.strip()) in stated:
             what, found = f"{what} {name} is stated twice", f"'{stated[name]}', '{text.strip()}'"
-            raise SymofrosError(Problem(what, found, "a name has one value", "leave one out"))
+            raise SymofrosError(what, found, "a name has one value", "leave one out")
         stated[name] = text.strip()
     return stated
 

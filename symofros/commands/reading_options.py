@@ -10,7 +10,7 @@ from dataclasses import Field, dataclass, field, fields, replace
 from pathlib import Path
 from typing import Any
 
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 
 _URDF = (".urdf", ".xacro")
 _WITH_PACKAGES = (*_URDF, ".sdf", ".world", ".xml")
@@ -116,7 +116,7 @@ class ReadingOptions:
         """
         if stated := ", ".join(self.keywords):
             rule = "options of reading apply to the file of a model"
-            raise SymofrosError(Problem(f"options of reading: {why}", stated, rule, "leave them out"))
+            raise SymofrosError(f"options of reading: {why}", stated, rule, "leave them out")
 
 
 OPTIONS: tuple[Field[Any], ...] = tuple(item for item in fields(ReadingOptions) if item.metadata)

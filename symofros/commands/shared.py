@@ -56,7 +56,7 @@ def refuse(error: Exception) -> typer.Exit:
         rule, remedy = "files and folders are there, and open to whoever runs this", "check the path, and its rights"
         if error.errno in NO_ROOM:
             rule, remedy = "there is room for what is written", "make room, write elsewhere, or raise `ulimit -f`"
-        error = sf.SymofrosError(sf.Problem(what, error.strerror or str(error), rule, remedy))
+        error = sf.SymofrosError(what, error.strerror or str(error), rule, remedy)
     _complain(error.in_shell() if isinstance(error, sf.SymofrosError) else str(error))
     return typer.Exit(BAD_INPUT)
 

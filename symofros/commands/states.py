@@ -35,7 +35,7 @@ def stated_state(model: sf.Model, given: Mapping[str, str]) -> tuple[sf.Model, A
             missing = f"--set: no coordinate, speed or run-time parameter '{name}'"
             listed = ", ".join(known[:12]) + (", …" if len(known) > 12 else "")
             rule = "--set gives first coordinates, speeds (dNAME) and run-time parameters"
-            raise refuse(sf.UnknownNameError(sf.Problem(missing, listed, rule, did_you_mean(name, known))))
+            raise refuse(sf.UnknownNameError(missing, listed, rule, did_you_mean(name, known)))
     return model, q, v
 
 
@@ -47,4 +47,4 @@ def _refuse_split(given: Mapping[str, str], known: Collection[str]) -> None:
         if meant is not None and name not in known:
             rule = "a name with an equals sign stands between backquotes"
             remedy = f"write '{quoted(meant)}={whole[len(meant) + 1 :]}'"
-            raise refuse(sf.UnknownNameError(sf.Problem(f"--set: no '{name}'", f"'{whole}'", rule, remedy)))
+            raise refuse(sf.UnknownNameError(f"--set: no '{name}'", f"'{whole}'", rule, remedy))

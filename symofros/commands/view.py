@@ -10,7 +10,6 @@ import typer
 import symofros as sf
 from symofros.commands.reading import ReadingOptions, reads_models
 from symofros.commands.shared import ModelPath, load, refuse
-from symofros.errors import Problem
 from symofros.studio.viewer.drawing.poses import Mechanism
 from symofros.studio.viewer.playing.motion import read_motion
 
@@ -51,12 +50,10 @@ def _record(system: sf.System, trajectory: Path | None, output: Path, exaggerati
         return sf.record(system, motion, output, exaggeration=exaggeration, speed=speed)
     if output.suffix in (".html", ".mp4", ".gif"):
         raise sf.SymofrosError(
-            Problem(
-                "record: nothing moves",
-                "no --trajectory",
-                "a recording is of a motion",
-                "simulate one: symofros simulate MODEL T -o FILE.npz; or record a .png",
-            )
+            "record: nothing moves",
+            "no --trajectory",
+            "a recording is of a motion",
+            "simulate one: symofros simulate MODEL T -o FILE.npz; or record a .png",
         )
     state = mechanism.closed(mechanism.state())[0]
     return sf.record(system, ([0.0], [state.q]), output, exaggeration=exaggeration)

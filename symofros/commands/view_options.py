@@ -11,7 +11,7 @@ from symofros.blocks.graphics.view import View3D, with_view
 from symofros.description import System
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.result import DiagramRun
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.page.viser_server import load_viser
 from symofros.studio.viewer.playing.diagram_motion import chosen_block, shown_system_and_states
@@ -49,7 +49,7 @@ class ViewOptions:
             if self.output is None or self.output.suffix != ".html":
                 stated = str(self.output or "no --record-view")
                 rule, remedy = "the page of a replay simulates on", "--record-view FILE.html"
-                raise SymofrosError(Problem("--interactive: there is no page", stated, rule, remedy))
+                raise SymofrosError("--interactive: there is no page", stated, rule, remedy)
             from symofros.exports.wasm import wasm  # Exports take long to import: no run else needs them.
 
             wasm.check_compiler()
@@ -70,7 +70,7 @@ def with_live_view(diagram: Diagram, options: ViewOptions, keeps_pace: bool) -> 
     """
     if options.interactive:
         rule, remedy = "the page simulates models: blocks are not in it", "leave --interactive out"
-        raise SymofrosError(Problem("--interactive: the file is a diagram", diagram.name, rule, remedy))
+        raise SymofrosError("--interactive: the file is a diagram", diagram.name, rule, remedy)
     options.check()
     if options.view and keeps_pace:
         return with_view(diagram, options.block, exaggeration=options.exaggeration)
@@ -80,13 +80,7 @@ def with_live_view(diagram: Diagram, options: ViewOptions, keeps_pace: bool) -> 
 
 
 def record_run(run: DiagramRun | Trajectory, options: ViewOptions, system: System | None = None) -> list[str]:
-    """Record a run if asked, and return the files written.
-
-    Args:
-        run: Run of a diagram, or of a model.
-        options: Options of the command line.
-        system: System of a model's run.
-    """
+    """Record a run if asked, and return the files written."""
     if options.output is None:
         return []
     if isinstance(run, DiagramRun):

@@ -18,14 +18,7 @@ BLOCKED: dict[str, tuple[tuple[AxisName, ...], tuple[AxisName, ...]]] = {
 
 
 def closing_remedy(name: str, kind: str, parent: str, child: str) -> str:
-    """Remedy for a joint that would give its child a second parent: replace it by a closure, or drop it.
-
-    Args:
-        name: Name of the joint.
-        kind: Type of the joint.
-        parent: Name of its parent.
-        child: Name of its child.
-    """
+    """Remedy for a joint that would give its child a second parent: replace it by a closure, or drop it."""
     if kind not in BLOCKED:
         why = "a floating joint binds nothing" if kind in ("floating", "free") else "no closure does what its type does"
         return f"drop the joint '{name}': {why}"

@@ -11,7 +11,7 @@ from symofros.description.contacts import Contact
 from symofros.description.entries import pairs_of, refuses_unknown_entries
 from symofros.description.forces import Anchor
 from symofros.description.values import Term, Value, as_value, symbols
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, did_you_mean
 from symofros.expr.expression import Expression
 
 AxisName = Literal["x", "y", "z"]
@@ -22,12 +22,10 @@ def _axes(stated: Any, what: str) -> tuple[AxisName, ...]:
     for name in stated:
         if name not in AXES:
             raise DescriptionError(
-                Problem(
-                    f"{what}: unknown direction",
-                    f"'{name}'",
-                    "blocked directions are x, y, z of the first frame",
-                    did_you_mean(str(name), AXES),
-                )
+                f"{what}: unknown direction",
+                f"'{name}'",
+                "blocked directions are x, y, z of the first frame",
+                did_you_mean(str(name), AXES),
             )
     return tuple(axis for axis in AXES if axis in stated)
 
@@ -84,12 +82,10 @@ class Closure(_OnCoordinates):
         object.__setattr__(self, "rotations", _axes(self.rotations, f"{what}: rotations"))
         if not self.translations and not self.rotations:
             raise DescriptionError(
-                Problem(
-                    f"{what}: blocks nothing",
-                    "no directions",
-                    "a closure blocks at least one",
-                    "name translations, rotations or both",
-                )
+                f"{what}: blocks nothing",
+                "no directions",
+                "a closure blocks at least one",
+                "name translations, rotations or both",
             )
 
     @property
@@ -139,12 +135,10 @@ class Coupling(_OnCoordinates):
         object.__setattr__(self, "residual", residual)
         if not symbols(residual):
             raise DescriptionError(
-                Problem(
-                    f"coupling '{self.name}': binds no coordinate",
-                    f"'{residual}'",
-                    "a coupling is a formula of coordinates",
-                    "name a coordinate",
-                )
+                f"coupling '{self.name}': binds no coordinate",
+                f"'{residual}'",
+                "a coupling is a formula of coordinates",
+                "name a coordinate",
             )
 
 
@@ -230,12 +224,10 @@ class Rolling(_OnSpeeds):
             object.__setattr__(self, label, as_value(getattr(self, label), f"{what}: {label}"))
         if self.shape not in ("disc", "sphere"):
             raise DescriptionError(
-                Problem(
-                    f"{what}: unknown shape",
-                    f"'{self.shape}'",
-                    "a rolling body is a disc or a sphere",
-                    did_you_mean(str(self.shape), ("disc", "sphere")),
-                )
+                f"{what}: unknown shape",
+                f"'{self.shape}'",
+                "a rolling body is a disc or a sphere",
+                did_you_mean(str(self.shape), ("disc", "sphere")),
             )
 
     @property
@@ -273,7 +265,7 @@ class Nonholonomic(_OnSpeeds):
         object.__setattr__(self, "right", as_value(self.right, f"{what}: right"))
         if not self.coefficients:
             raise DescriptionError(
-                Problem(f"{what}: binds no speed", "no coefficients", "a constraint has at least one", "name a speed")
+                f"{what}: binds no speed", "no coefficients", "a constraint has at least one", "name a speed"
             )
 
 
@@ -300,12 +292,10 @@ class Switch:
         object.__setattr__(self, "engaged", as_value(self.engaged, f"{what}: engaged"))
         if self.pose not in ("stated", "moment"):
             raise DescriptionError(
-                Problem(
-                    f"{what}: unknown pose",
-                    f"'{self.pose}'",
-                    "a constraint engages at the pose that is 'stated', or at that of the 'moment'",
-                    did_you_mean(str(self.pose), ("stated", "moment")),
-                )
+                f"{what}: unknown pose",
+                f"'{self.pose}'",
+                "a constraint engages at the pose that is 'stated', or at that of the 'moment'",
+                did_you_mean(str(self.pose), ("stated", "moment")),
             )
 
 

@@ -78,7 +78,7 @@ def _collect(check: Callable[[str, object], None] | None, what: str, values: Any
     names = isinstance(values, Set) and all(isinstance(value, str) for value in values)
     listed = sorted(values) if names else entries_of(values)
     if listed is None:
-        raise ArgumentError(Problem(f"{what} is not a list", shown(values), "it is a list", "put it in brackets"))
+        raise ArgumentError(f"{what} is not a list", shown(values), "it is a list", "put it in brackets")
     if check is not None:
         for i, value in enumerate(listed):
             check(f"{what}[{i}]", value)
@@ -93,13 +93,13 @@ def _anchor(what: str, value: Any) -> tuple[str, str | None]:
             return body, frame
     rule = "it is (body, frame): the names, with None for the body's own frame"
     example = "for example ('arm', 'tip') or ('world', None)"
-    raise ArgumentError(Problem(f"{what} is no frame of a body", shown(value), rule, example))
+    raise ArgumentError(f"{what} is no frame of a body", shown(value), rule, example)
 
 
 def _mapping(what: str, value: Any) -> Any:
     """A mapping, whose entries are not looked at: these are the importers' own."""
     if not isinstance(value, Mapping):
-        raise ArgumentError(Problem(f"{what} is not a mapping", shown(value), "it is a mapping", "leave it out"))
+        raise ArgumentError(f"{what} is not a mapping", shown(value), "it is a mapping", "leave it out")
     return value
 
 
@@ -127,13 +127,13 @@ def _check_of(annotation: Any) -> Callable[[str, object], None] | None:
 
 def _check_scalar(what: str, value: object) -> None:
     if value is not None and not isinstance(value, numbers.Number | str):
-        raise ArgumentError(Problem(f"{what} is not a number", shown(value), "it is a number", "give one number"))
+        raise ArgumentError(f"{what} is not a number", shown(value), "it is a number", "give one number")
 
 
 def _check_load(what: str, value: object) -> None:
     """Which loads a kind of body bears is judged where all of the description is known."""
     if type(value).__name__ not in ("Load", "BeamLoad"):
-        raise ArgumentError(Problem(f"{what} is no load", shown(value), "it is a Load or BeamLoad", "give a Load"))
+        raise ArgumentError(f"{what} is no load", shown(value), "it is a Load or BeamLoad", "give a Load")
 
 
 def _holds_values(annotation: Any) -> bool:
@@ -177,7 +177,7 @@ def pairs_of(given: Any, what: str) -> list[tuple[str, Any]]:
         if all(isinstance(pair, tuple | list) and len(pair) == 2 and isinstance(pair[0], str) for pair in listed):
             return [(name, value) for name, value in listed]
     rule = "names with a value each"
-    raise EntryTypeError(Problem(f"{what}: no names with values", shown(given), rule, "for example {'dq1': 'r'}"))
+    raise EntryTypeError(f"{what}: no names with values", shown(given), rule, "for example {'dq1': 'r'}")
 
 
 def refuses_unknown_entries(cls: _Class) -> _Class:

@@ -9,7 +9,7 @@ from typing import Any
 from symofros.base.arguments import shown
 from symofros.base.events import Event
 from symofros.description.values import Value, as_value
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 
 
 def as_events(stated: Mapping[str, Any]) -> dict[str, Event]:
@@ -23,9 +23,7 @@ def as_events(stated: Mapping[str, Any]) -> dict[str, Event]:
     """
     for name in stated:
         if not isinstance(name, str):
-            raise DescriptionError(
-                Problem("an event without a name", shown(name), "its name is a text", "{'grasp': ...}")
-            )
+            raise DescriptionError("an event without a name", shown(name), "its name is a text", "{'grasp': ...}")
     return {name: _as_event(name, event) for name, event in stated.items()}
 
 

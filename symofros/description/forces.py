@@ -9,7 +9,7 @@ from typing import Any, ClassVar, Literal
 from symofros.base.names import name_of
 from symofros.description.entries import pairs_of, refuses_unknown_entries, shown_entries
 from symofros.description.values import ORIGIN, Term, Value, Vector, as_value, as_vector
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 
 
 class _Values:
@@ -135,7 +135,7 @@ class Friction(_Values):
         if self.sticks and self.factor != 1.0:
             rule = "friction that sticks lets go at a level of parameters, which only events change"
             remedy = "leave sticks out, or state dynamic and static by parameters"
-            raise DescriptionError(Problem("friction: factor of friction that sticks", f"{self.factor}", rule, remedy))
+            raise DescriptionError("friction: factor of friction that sticks", f"{self.factor}", rule, remedy)
 
     def __repr__(self) -> str:
         """Each field that counts, as hashes of descriptions are made of this text."""
@@ -198,9 +198,7 @@ class LuGre(_Values):
         if (self.static is None) != (self.stribeck_velocity is None):
             given = "static" if self.stribeck_velocity is None else "stribeck_velocity"
             rule = "friction falls from static to dynamic over stribeck_velocity"
-            raise DescriptionError(
-                Problem("lugre: one of two entries", f"{given} alone", rule, "give both, or neither")
-            )
+            raise DescriptionError("lugre: one of two entries", f"{given} alone", rule, "give both, or neither")
 
 
 @refuses_unknown_entries
@@ -308,7 +306,7 @@ class Load:
         object.__setattr__(self, "torque", as_vector(self.torque, "load: torque"))
         if self.axes not in ("body", "world"):
             raise DescriptionError(
-                Problem(f"load: axes '{self.axes}'", str(self.axes), "axes are 'body' or 'world'", "choose one")
+                f"load: axes '{self.axes}'", str(self.axes), "axes are 'body' or 'world'", "choose one"
             )
 
 

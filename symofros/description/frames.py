@@ -11,7 +11,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Vector, as_vector
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 
 
 @refuses_unknown_entries
@@ -37,12 +37,10 @@ class Frame:
         object.__setattr__(self, "position", as_vector(self.position, f"frame '{self.name}': position"))
         if self.at is not None and not (isinstance(self.at, Real) and 0.0 <= self.at <= 1.0):
             raise DescriptionError(
-                Problem(
-                    f"frame '{self.name}': station off the beam",
-                    f"at {self.at!r}",
-                    "at is x/L, from 0 (root) to 1 (tip)",
-                    "divide the station by the length; leave at out for a frame at the tip",
-                )
+                f"frame '{self.name}': station off the beam",
+                f"at {self.at!r}",
+                "at is x/L, from 0 (root) to 1 (tip)",
+                "divide the station by the length; leave at out for a frame at the tip",
             )
 
     @property

@@ -15,7 +15,7 @@ from pathlib import Path
 from xml.parsers import expat
 
 from symofros.description.reading import resolved
-from symofros.errors import Argument, DescriptionError, Problem
+from symofros.errors import Argument, DescriptionError
 
 Folders = Mapping[str, str | os.PathLike[str]]
 
@@ -52,19 +52,15 @@ class Packages:
         for name, folder in (stated or {}).items():
             if "\0" in os.fspath(folder):
                 shown, rule = f"{os.fspath(folder)!r:.{MAX_SHOWN}}", "the path of a folder holds no NUL character"
-                raise DescriptionError(
-                    Problem(f"package '{name:.{MAX_SHOWN}}' is not there", shown, rule, "check the path")
-                )
+                raise DescriptionError(f"package '{name:.{MAX_SHOWN}}' is not there", shown, rule, "check the path")
         self.stated = {name: resolved(Path(folder)) for name, folder in (stated or {}).items()}
         for name, folder in self.stated.items():
             if not os.path.isdir(folder):
                 raise DescriptionError(
-                    Problem(
-                        f"package '{name:.{MAX_SHOWN}}' is not there",
-                        f"'{str(folder):.{MAX_SHOWN}}'",
-                        "a package is a folder",
-                        "check the path",
-                    )
+                    f"package '{name:.{MAX_SHOWN}}' is not there",
+                    f"'{str(folder):.{MAX_SHOWN}}'",
+                    "a package is a folder",
+                    "check the path",
                 )
 
     @cached_property
@@ -135,12 +131,7 @@ class Packages:
         return _declares_a_model(around / path.relative_to(around).parts[0])
 
     def file(self, name: str, base: Path) -> Path | None:
-        """The file that a description names, links followed; None where it may not be read.
-
-        Args:
-            name: Path as the description states it.
-            base: Folder that the path starts from.
-        """
+        """The file that a description names, links followed; None where it may not be read."""
         path = resolved(base / name)
         return path if self.allows(path) else None
 
@@ -148,9 +139,6 @@ class Packages:
         """The argument that lets a folder be read; None where none is to be proposed.
 
         It opens no more than the folder of a file, and no folder that others use: none above the folder two levels up.
-
-        Args:
-            path: The folder, or a file in it.
         """
         folder = Path(os.path.normpath(path if os.path.isdir(path) else path.parent))
         shared = len(folder.parts) < _MIN_PARTS or not folder.is_relative_to(self.folder.parent.parent)

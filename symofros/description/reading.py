@@ -48,24 +48,20 @@ def _place(problem: Problem) -> tuple[str, int]:
 def read_bytes(path: Path, limit: int) -> bytes:
     """The content of a regular file.
 
-    Args:
-        path: Path of the file.
-        limit: The most bytes that are accepted.
-
     Raises:
         DescriptionError: No such file, not a regular one (a pipe would block), unreadable, or too large.
     """
     try:
         if not path.is_file():
             raise DescriptionError(
-                Problem(f"'{path}' can't be read", kind_of(path), "a description is a regular file", "check the path")
+                f"'{path}' can't be read", kind_of(path), "a description is a regular file", "check the path"
             )
         with path.open("rb") as stream:
             data = stream.read(limit + 1)
     except (OSError, ValueError) as error:  # ValueError: a NUL character in the path.
         reason = getattr(error, "strerror", None) or str(error)
         raise DescriptionError(
-            Problem(f"{str(path)!r} can't be read", reason, "a description is a file", "check the path")
+            f"{str(path)!r} can't be read", reason, "a description is a file", "check the path"
         ) from None
     refuse_size(path, data, limit)
     return data
@@ -102,12 +98,10 @@ def refuse_size(path: Path, data: bytes, limit: int) -> None:
     """
     if len(data) > limit:
         raise DescriptionError(
-            Problem(
-                f"'{path}' is too large",
-                f"more than {limit} bytes",
-                "a description with all it includes is at most 4 MiB long, a URDF 16 MiB",
-                "check that it is the file you meant",
-            )
+            f"'{path}' is too large",
+            f"more than {limit} bytes",
+            "a description with all it includes is at most 4 MiB long, a URDF 16 MiB",
+            "check that it is the file you meant",
         )
 
 

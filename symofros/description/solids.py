@@ -12,7 +12,7 @@ from typing import Any, Literal
 from symofros.base.arguments import checked
 from symofros.description.system import Inertia
 from symofros.description.values import Term, Vector, as_value
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 
 _AXES = "xyz"
 
@@ -116,7 +116,7 @@ def _terms(solid: str, **stated: Any) -> list[Term]:
     for name, value in values.items():
         if isinstance(value, float) and not (math.isfinite(value) and value > 0.0):
             rule = "densities and sizes are finite and positive"
-            raise DescriptionError(Problem(f"{solid}: {name} is not positive", f"{value:g}", rule, "state its size"))
+            raise DescriptionError(f"{solid}: {name} is not positive", f"{value:g}", rule, "state its size")
     return [Term(value) for value in values.values()]
 
 
@@ -125,7 +125,7 @@ def _hole(solid: str, hole: Any, radius: Any) -> Term:
     if isinstance(inner, float) and not (inner >= 0.0 and (not isinstance(outer, float) or inner < outer)):
         rule = "the radius of a hole is from zero to below that of the solid"
         stated = f"hole {inner}, radius {outer}"
-        raise DescriptionError(Problem(f"{solid}: no such hole", stated, rule, "make it smaller"))
+        raise DescriptionError(f"{solid}: no such hole", stated, rule, "make it smaller")
     return Term(inner)
 
 

@@ -23,7 +23,7 @@ from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Value, Vector, as_value, as_vector
 from symofros.description.visual import Visual
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, did_you_mean
 
 # The checks a body may waive, each with what it lets pass.
 WAIVERS: dict[str, str] = {
@@ -97,28 +97,22 @@ class Inertia:
             moments = (*moments, 0.0, 0.0, 0.0)
         if len(moments) != 6:
             raise DescriptionError(
-                Problem(
-                    "inertia: wrong number of entries",
-                    f"{len(moments)} entries" if listed else shown(self.moments),
-                    "three (Ixx, Iyy, Izz) or six (then Ixy, Ixz, Iyz)",
-                    "give three, or all six, zeros included",
-                )
+                "inertia: wrong number of entries",
+                f"{len(moments)} entries" if listed else shown(self.moments),
+                "three (Ixx, Iyy, Izz) or six (then Ixy, Ixz, Iyz)",
+                "give three, or all six, zeros included",
             )
         object.__setattr__(self, "moments", moments)
         if self.about not in ("center_of_mass", "body"):
             raise DescriptionError(
-                Problem(
-                    f"inertia: about '{self.about}'", self.about, "about is 'center_of_mass' or 'body'", "choose one"
-                )
+                f"inertia: about '{self.about}'", self.about, "about is 'center_of_mass' or 'body'", "choose one"
             )
         if self.about == "body" and not self.rotation.is_identity:
             raise DescriptionError(
-                Problem(
-                    "inertia: a rotation is given with about='body'",
-                    f"rotation {self.rotation.kind}",
-                    "an inertia about the body origin is along the body's axes",
-                    "drop the rotation, or give the inertia about the center_of_mass",
-                )
+                "inertia: a rotation is given with about='body'",
+                f"rotation {self.rotation.kind}",
+                "an inertia about the body origin is along the body's axes",
+                "drop the rotation, or give the inertia about the center_of_mass",
             )
 
 
@@ -149,23 +143,19 @@ class RigidBody:
         for frame in self.frames:
             if frame.at is not None:
                 raise DescriptionError(
-                    Problem(
-                        f"body '{self.name}': frame '{frame.name}' at a station",
-                        f"at {frame.at!r}",
-                        "beams alone have stations: a rigid body's frame is placed by its position",
-                        "state the position instead",
-                    )
+                    f"body '{self.name}': frame '{frame.name}' at a station",
+                    f"at {frame.at!r}",
+                    "beams alone have stations: a rigid body's frame is placed by its position",
+                    "state the position instead",
                 )
         object.__setattr__(self, "loads", tuple(self.loads))
         object.__setattr__(self, "waive", tuple(sorted(set(self.waive))))
         for unknown in sorted(set(self.waive) - WAIVERS.keys()):
             raise DescriptionError(
-                Problem(
-                    f"body '{self.name}': unknown waiver",
-                    f"'{unknown}'",
-                    f"one of {', '.join(WAIVERS)}",
-                    did_you_mean(unknown, WAIVERS),
-                )
+                f"body '{self.name}': unknown waiver",
+                f"'{unknown}'",
+                f"one of {', '.join(WAIVERS)}",
+                did_you_mean(unknown, WAIVERS),
             )
 
 
@@ -304,12 +294,10 @@ class System:
             if body.name == name:
                 return body
         raise DescriptionError(
-            Problem(
-                f"system '{self.name}': no body '{name}'",
-                ", ".join(b.name for b in self.bodies),
-                "a body is found by its name",
-                did_you_mean(name, [b.name for b in self.bodies]),
-            )
+            f"system '{self.name}': no body '{name}'",
+            ", ".join(b.name for b in self.bodies),
+            "a body is found by its name",
+            did_you_mean(name, [b.name for b in self.bodies]),
         )
 
     def with_bodies(self, *bodies: Body) -> System:

@@ -11,7 +11,7 @@ from typing import Any, Literal
 
 from symofros.base.arguments import CheckedCalls, entries_of, shown
 from symofros.description.parser import ExpressionError, parse
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, did_you_mean
 from symofros.expr.expression import Expression
 
 Value = float | Expression
@@ -46,7 +46,7 @@ def as_value(value: Any, what: str = "value") -> Value:
             number = math.inf
         if not math.isfinite(number):
             raise DescriptionError(
-                Problem(f"{what}: not a finite number", repr(number), "every number is finite", "give a finite value")
+                f"{what}: not a finite number", repr(number), "every number is finite", "give a finite value"
             )
         return number
     if type(value).__module__.partition(".")[0] == "sympy":
@@ -56,21 +56,17 @@ def as_value(value: Any, what: str = "value") -> Value:
             frozen = freeze(value)
         except ValueError as error:
             raise DescriptionError(
-                Problem(
-                    f"{what}: {error}",
-                    str(value),
-                    "formulas use the op table's functions only",
-                    "rewrite it with these functions",
-                )
+                f"{what}: {error}",
+                str(value),
+                "formulas use the op table's functions only",
+                "rewrite it with these functions",
             ) from None
         return frozen.number if frozen.kind == "number" else frozen
     raise DescriptionError(
-        Problem(
-            f"{what}: neither a number nor a formula",
-            shown(value),
-            "a value is a number, a formula such as 'L1/2', or a SymPy expression",
-            "convert it to one of these",
-        )
+        f"{what}: neither a number nor a formula",
+        shown(value),
+        "a value is a number, a formula such as 'L1/2', or a SymPy expression",
+        "convert it to one of these",
     )
 
 
@@ -85,12 +81,10 @@ def as_values(values: Iterable[Any], size: int, what: str) -> tuple[Value, ...]:
         listed = [] if isinstance(values, Mapping | Set) else [values]
     if len(listed) != size:
         raise DescriptionError(
-            Problem(
-                f"{what}: wrong number of entries",
-                f"{len(listed)} entries",
-                f"{size} entries, in order",
-                f"give all {size}, zeros included",
-            )
+            f"{what}: wrong number of entries",
+            f"{len(listed)} entries",
+            f"{size} entries, in order",
+            f"give all {size}, zeros included",
         )
     return tuple(as_value(value, f"{what}[{i}]") for i, value in enumerate(listed))
 
@@ -124,12 +118,10 @@ class Rotation(metaclass=CheckedCalls):
         size = _ROTATION_SIZE.get(self.kind) if isinstance(self.kind, str) else None
         if size is None:
             raise DescriptionError(
-                Problem(
-                    f"rotation: unknown kind '{self.kind!s:.40}'",
-                    shown(self.kind),
-                    f"one of {', '.join(_ROTATION_SIZE)}",
-                    did_you_mean(str(self.kind), _ROTATION_SIZE),
-                )
+                f"rotation: unknown kind '{self.kind!s:.40}'",
+                shown(self.kind),
+                f"one of {', '.join(_ROTATION_SIZE)}",
+                did_you_mean(str(self.kind), _ROTATION_SIZE),
             )
         object.__setattr__(self, "values", as_values(self.values, size, f"rotation ({self.kind})"))
 
@@ -172,9 +164,7 @@ def _rows(rows: Any, what: str) -> list[list[Any]]:
     entries = [entries_of(row) or [] for row in entries_of(rows) or []]
     if [len(row) for row in entries] != [3, 3, 3]:
         rule = "three rows of three numbers or formulas each"
-        raise DescriptionError(
-            Problem(f"{what}: no matrix of three rows", shown(rows), rule, "give all nine, zeros included")
-        )
+        raise DescriptionError(f"{what}: no matrix of three rows", shown(rows), rule, "give all nine, zeros included")
     return entries
 
 
@@ -195,7 +185,7 @@ def as_rotation(what: str, value: Any) -> Rotation:
     except DescriptionError:
         rule = "it is a Rotation, or the rows of a matrix"
         remedy = "sf.Rotation.rpy(roll, pitch, yaw), .quaternion(x, y, z, w), .axis_angle(axis, angle) or .matrix(rows)"
-        raise DescriptionError(Problem(f"{what} is no rotation", shown(value), rule, remedy)) from None
+        raise DescriptionError(f"{what} is no rotation", shown(value), rule, remedy) from None
     return Rotation.matrix(rows)
 
 

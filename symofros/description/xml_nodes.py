@@ -6,7 +6,7 @@ from collections.abc import Iterator
 from dataclasses import dataclass, field
 from xml.parsers import expat
 
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 
 MAX_DEPTH = 100
 MAX_TEXT = 4096
@@ -64,23 +64,19 @@ def parse_xml(data: bytes, file: str) -> Element:
         if builder.open:
             syntax_error += f"; <{builder.open[-1].tag:.60}> of line {builder.open[-1].line} is not closed"
         raise DescriptionError(
-            Problem(
-                "the text is not well-formed XML",
-                syntax_error,
-                "a robot file is one XML document",
-                "mind unclosed elements and quotes near this line",
-                f"{file}:{error.lineno}",
-            )
+            "the text is not well-formed XML",
+            syntax_error,
+            "a robot file is one XML document",
+            "mind unclosed elements and quotes near this line",
+            f"{file}:{error.lineno}",
         ) from None
     except (LookupError, ValueError) as error:
         raise DescriptionError(
-            Problem(
-                "the text's encoding is unknown",
-                str(error),
-                "the encoding is one that Python knows",
-                "save the file as UTF-8",
-                f"{file}:1",
-            )
+            "the text's encoding is unknown",
+            str(error),
+            "the encoding is one that Python knows",
+            "save the file as UTF-8",
+            f"{file}:1",
         ) from None
     assert builder.root is not None  # Expat has found the document well-formed.
     return builder.root
@@ -99,7 +95,7 @@ class _Builder:
         self.parser.buffer_text = True
 
     def fault(self, what: str, found: str, rule: str, remedy: str) -> DescriptionError:
-        return DescriptionError(Problem(what, found, rule, remedy, f"{self.file}:{self.parser.CurrentLineNumber}"))
+        return DescriptionError(what, found, rule, remedy, f"{self.file}:{self.parser.CurrentLineNumber}")
 
     def doctype(self, name: str, *_: object) -> None:
         raise self.fault(

@@ -26,7 +26,7 @@ from symofros.diagrams.run.recording import Records
 from symofros.diagrams.run.simulate import PlannedRun, recording_plan, run_from, run_planned
 from symofros.diagrams.run.starts import Start
 from symofros.diagrams.run.values import diagram_options
-from symofros.errors import AssemblyError, BeamTheoryError, Problem, SymofrosError
+from symofros.errors import AssemblyError, BeamTheoryError, SymofrosError
 from symofros.runtime.beams import largest_bending
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.results.ends import ENDS
@@ -158,9 +158,9 @@ def run_batch(
         what = f"diagram '{resolved.wired.name}': block '{external[0]}' in a batch"
         rule = "runs of a batch share threads in C, and a block of Python's, of a network or an imported FMU is called"
         remedy = "run(...) in a loop; or write the block of formulas"
-        raise SymofrosError(Problem(what, type(resolved.wired.blocks[external[0]]).__name__, rule, remedy))
+        raise SymofrosError(what, type(resolved.wired.blocks[external[0]]).__name__, rule, remedy)
     if threads < 1:
-        raise SymofrosError(Problem("run_batch: no thread", f"threads = {threads}", "threads >= 1", "leave it out"))
+        raise SymofrosError("run_batch: no thread", f"threads = {threads}", "threads >= 1", "leave it out")
     members = Members.of(compiled, chosen.t0, parameters, starts, inputs)
     shape, n = members.shape, len(members.par)
     plan = recording_plan(resolved, chosen, t_end)

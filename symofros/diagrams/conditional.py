@@ -16,7 +16,7 @@ from symofros.base.arrays import Array, numeric
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.settings import Plot
 from symofros.diagrams.tensor import Tensor
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, did_you_mean
 from symofros.simulation.inputs import Signal
 
 # Blocks of a conditional part that read its signals, their input and their outputs.
@@ -52,24 +52,24 @@ class Condition(metaclass=CheckedCalls):
         for key in (ENABLED, TRIGGERED):
             if not isinstance(getattr(self, key), (str, bool)):
                 found, rule = f"{getattr(self, key)!r:.40}", f"{key} names a signal, or is True"
-                raise DescriptionError(Problem(f"condition: {key} is no source", found, rule, "such as 'logic.on'"))
+                raise DescriptionError(f"condition: {key} is no source", found, rule, "such as 'logic.on'")
         if not (self.enabled or self.triggered):
             rule, remedy = "enabled, triggered, or both name a signal", "such as enabled='logic.on'"
-            raise DescriptionError(Problem("condition: no signal", "neither is stated", rule, remedy))
+            raise DescriptionError("condition: no signal", "neither is stated", rule, remedy)
         if not self.enabled and "reset" in (self.outputs, self.states):
             what, rule = "condition: a reset without `enabled`", "resets follow from enabling; a trigger alone holds"
-            raise DescriptionError(Problem(what, f"outputs {self.outputs}, states {self.states}", rule, "leave it out"))
+            raise DescriptionError(what, f"outputs {self.outputs}, states {self.states}", rule, "leave it out")
         if self.edge not in _EDGES:
             rule, remedy = f"edge is one of {', '.join(_EDGES)}", did_you_mean(str(self.edge), _EDGES)
-            raise DescriptionError(Problem("condition: unknown edge", f"{self.edge!r:.40}", rule, remedy))
+            raise DescriptionError("condition: unknown edge", f"{self.edge!r:.40}", rule, remedy)
         for key in ("outputs", "states"):
             if getattr(self, key) not in _KEPT:
                 found, rule = f"{getattr(self, key)!r:.40}", f"{key} is one of {', '.join(_KEPT)}"
-                raise DescriptionError(Problem(f"condition: unknown {key}", found, rule, "state one of them"))
+                raise DescriptionError(f"condition: unknown {key}", found, rule, "state one of them")
         for outlet, value in self.initial.items():
             if not np.all(np.isfinite(numeric(f"condition: initial value of '{outlet}'", value))):
                 what, rule = f"condition: initial value of '{outlet}'", "finite numbers"
-                raise DescriptionError(Problem(what, f"{value!r:.40}", rule, "give others"))
+                raise DescriptionError(what, f"{value!r:.40}", rule, "give others")
 
     def signals(self) -> dict[str, str | bool]:
         """Block that tells a signal of the condition -> source of the signal, or True."""
@@ -243,4 +243,4 @@ class _Run:
 
 def refused(block: str, what: str, found: object, rule: str, remedy: str) -> DescriptionError:
     """A refusal, said of a block."""
-    return DescriptionError(Problem(f"block '{block}': {what}", f"{found}", rule, remedy))
+    return DescriptionError(f"block '{block}': {what}", f"{found}", rule, remedy)

@@ -125,21 +125,17 @@ class Diagram(metaclass=CheckedCalls):
         block, _, port = target.rpartition(".")
         if not block or not port:
             raise DescriptionError(
-                Problem(
-                    f"diagram '{self.name}': no input '{target}'",
-                    "no block and port",
-                    "an input is written block.port",
-                    "for example pd.desired",
-                )
+                f"diagram '{self.name}': no input '{target}'",
+                "no block and port",
+                "an input is written block.port",
+                "for example pd.desired",
             )
         if (block, port) in self.wires:
             raise DescriptionError(
-                Problem(
-                    f"diagram '{self.name}': input '{target}' is fed twice",
-                    f"by {self.wires[block, port]} and {source}",
-                    "an input has one source",
-                    "add the signals in a block of their own",
-                )
+                f"diagram '{self.name}': input '{target}' is fed twice",
+                f"by {self.wires[block, port]} and {source}",
+                "an input has one source",
+                "add the signals in a block of their own",
             )
         self.wires[block, port] = source
 
@@ -262,12 +258,10 @@ class Diagram(metaclass=CheckedCalls):
         """Connect a source to all that an inlet of a part feeds."""
         if inlet not in part.inlets:
             raise DescriptionError(
-                Problem(
-                    f"diagram '{self.name}': part '{name}' has no inlet '{inlet}'",
-                    f"'{inlet}'",
-                    f"inlets: {', '.join(part.inlets) or 'none'}",
-                    did_you_mean(inlet, part.inlets),
-                )
+                f"diagram '{self.name}': part '{name}' has no inlet '{inlet}'",
+                f"'{inlet}'",
+                f"inlets: {', '.join(part.inlets) or 'none'}",
+                did_you_mean(inlet, part.inlets),
             )
         for target in part.fed_by(inlet):
             self.connect(source, f"{name}{INSIDE}{target}")
@@ -313,30 +307,24 @@ class Diagram(metaclass=CheckedCalls):
         """The same diagram about another model: rigid in place of flexible, say."""
         if name not in self.models:
             raise DescriptionError(
-                Problem(
-                    f"diagram '{self.name}': no model '{name}'",
-                    f"'{name}'",
-                    f"models: {', '.join(self.models) or 'none'}",
-                    did_you_mean(name, self.models),
-                )
+                f"diagram '{self.name}': no model '{name}'",
+                f"'{name}'",
+                f"models: {', '.join(self.models) or 'none'}",
+                did_you_mean(name, self.models),
             )
         return replace(self, models={**self.models, name: setup})
 
     def _refuse_name(self, what: str, name: str, taken: Any) -> None:
         if not _NAME.match(name):
             raise DescriptionError(
-                Problem(
-                    f"diagram '{self.name}': {what} '{name:.60}'",
-                    "not a name",
-                    "letters, digits and underscores, a letter first",
-                    "rename it",
-                )
+                f"diagram '{self.name}': {what} '{name:.60}'",
+                "not a name",
+                "letters, digits and underscores, a letter first",
+                "rename it",
             )
         if name in taken:
             raise DescriptionError(
-                Problem(
-                    f"diagram '{self.name}': two {what}s named '{name}'", f"'{name}'", "names are unique", "rename one"
-                )
+                f"diagram '{self.name}': two {what}s named '{name}'", f"'{name}'", "names are unique", "rename one"
             )
 
 

@@ -191,7 +191,7 @@ def not_given(diagram: str, inlet: str) -> Problem:
 
 
 def _refused(name: str, found: str, rule: str, remedy: str) -> DescriptionError:
-    return DescriptionError(Problem(f"inlet '{name}': does not fit", found, rule, remedy))
+    return DescriptionError(f"inlet '{name}': does not fit", found, rule, remedy)
 
 
 def settled(block: Block, ports: Ports) -> Block:

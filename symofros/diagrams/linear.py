@@ -26,7 +26,7 @@ from symofros.diagrams.program.slopes import (
 from symofros.diagrams.rates import schedule
 from symofros.diagrams.run.operating_point import OperatingPoint
 from symofros.diagrams.wiring import Source
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.runtime.constrained import solve
 from symofros.runtime.manifold import along_speeds
 from symofros.runtime.methods.linear import state_matrices
@@ -95,7 +95,7 @@ def linearised(
 
 
 def _no_model(resolved: Resolved, found: str, rule: str, remedy: str) -> SymofrosError:
-    return SymofrosError(Problem(f"diagram '{resolved.wired.name}': no linear model", found, rule, remedy))
+    return SymofrosError(f"diagram '{resolved.wired.name}': no linear model", found, rule, remedy)
 
 
 def _sources(resolved: Resolved, outputs: Sequence[str] | None) -> dict[str, Source]:

@@ -10,7 +10,7 @@ from itertools import count
 
 import numpy as np
 
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 from symofros.simulation.inputs import ROUNDED_ZERO
 
 # Instants of a common period: more are a sign of periods that do not fit together.
@@ -94,10 +94,8 @@ def _exact(seconds: float) -> Fraction:
 def _too_many(name: str, exact: list[tuple[str, Fraction, Fraction]], found: str, rule: str) -> DescriptionError:
     periods = sorted({float(period) for _, period, _ in exact})
     return DescriptionError(
-        Problem(
-            f"diagram '{name}': sample times do not fit together",
-            f"{found}; periods {periods[:6]}",
-            rule,
-            "choose periods that are multiples of each other",
-        )
+        f"diagram '{name}': sample times do not fit together",
+        f"{found}; periods {periods[:6]}",
+        rule,
+        "choose periods that are multiples of each other",
     )

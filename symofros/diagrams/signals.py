@@ -7,7 +7,7 @@ from collections.abc import Iterator
 from itertools import product
 
 from symofros.diagrams.block import Shape
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 
 _ENTRY = re.compile(r"(?P<name>.*)\[(?P<index>\d{1,9}(?:,\d{1,9})*)\]$")
 
@@ -32,10 +32,8 @@ def check_entry(text: str, index: tuple[int, ...] | None, shape: Shape) -> None:
     """
     if index is not None and (len(index) != len(shape) or any(i >= n for i, n in zip(index, shape, strict=True))):
         raise DescriptionError(
-            Problem(
-                f"signal '{text:.80}': no such entry",
-                f"[{','.join(map(str, index))}]",
-                f"the signal has shape {shape}",
-                "entries count from 0",
-            )
+            f"signal '{text:.80}': no such entry",
+            f"[{','.join(map(str, index))}]",
+            f"the signal has shape {shape}",
+            "entries count from 0",
         )

@@ -32,7 +32,7 @@ from symofros.diagrams.run.python_blocks import begun
 from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.run.values import parameter_values, record_interval
 from symofros.diagrams.stepper import DiagramStepper
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT
 from symofros.runtime.build import find_toolchain
 from symofros.simulation.progress import bar
@@ -233,20 +233,18 @@ class Simulation:
         resolved = self._given(inputs)
         if not (math.isfinite(dt) and dt > 0.0):
             what, rule = "diagram: the step is not positive", "dt > 0, and finite"
-            raise SymofrosError(Problem(what, f"dt = {dt}", rule, "1e-3 s suits most arms"))
+            raise SymofrosError(what, f"dt = {dt}", rule, "1e-3 s suits most arms")
         if method not in METHODS or METHODS[method].kind != "explicit" or METHODS[method].adaptive:
             raise SymofrosError(
-                Problem(
-                    f"diagram: method '{method}' interpreted",
-                    "not of fixed explicit steps",
-                    "an interpreted run steps by rk4 or euler",
-                    "use run",
-                )
+                f"diagram: method '{method}' interpreted",
+                "not of fixed explicit steps",
+                "an interpreted run steps by rk4 or euler",
+                "use run",
             )
         if any(piece.switching for piece in resolved.pieces.values()):
             what = f"diagram '{resolved.wired.name}': events of mechanisms"
             rule = "it does not locate events of mechanisms, nor modes of friction that sticks, or of rigid contacts"
-            raise SymofrosError(Problem(what, "an interpreted run", rule, "use run"))
+            raise SymofrosError(what, "an interpreted run", rule, "use run")
         par = parameter_values(resolved, parameters or {})
         toolchain = find_toolchain(self.options.compiler) if compiled else None
         interval = record_interval(record, t0, t_end, dt)
@@ -272,11 +270,9 @@ def _end(diagram: Diagram, t_end: float | None) -> float:
     end = t_end if t_end is not None else diagram.simulation.t_end
     if end is None:
         raise SymofrosError(
-            Problem(
-                f"diagram '{diagram.name}': no end of time",
-                "t_end is not stated",
-                "a run ends somewhere",
-                "give t_end, or state it under simulation",
-            )
+            f"diagram '{diagram.name}': no end of time",
+            "t_end is not stated",
+            "a run ends somewhere",
+            "give t_end, or state it under simulation",
         )
     return end

@@ -24,9 +24,10 @@ from symofros.diagrams.run.recording import Records
 from symofros.diagrams.run.simulate import PlannedRun, examined_run, placed_loop, run_from
 from symofros.diagrams.run.starts import Start
 from symofros.diagrams.run.values import diagram_options, parameter_values, record_interval
+from symofros.errors import SymofrosError
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.results.outcome import Outcome
-from symofros.simulation.stepped import MOST_STEPS, Stepped, no_steps, refusal
+from symofros.simulation.stepped import MOST_STEPS, Stepped, no_steps
 from symofros.simulation.stepping.loops import Recorded, drive
 from symofros.simulation.stepping.status import Status
 
@@ -123,7 +124,7 @@ class DiagramStepper(Stepped):
         if not 1 <= steps <= MOST_STEPS:
             raise no_steps(steps)
         if not self.running:
-            raise refusal(
+            raise SymofrosError(
                 "step: the motion has ended", repr(self), "steps are made while step() returns True", "reset()"
             )
         self._begin_alone()
@@ -192,7 +193,7 @@ class DiagramStepper(Stepped):
         """
         plan, live = self._plan, self._loop
         if not self._marks:
-            raise refusal("stepper: no motion yet", repr(self), "a motion has a step at least", "step() first")
+            raise SymofrosError("stepper: no motion yet", repr(self), "a motion has a step at least", "step() first")
         plan = replace(plan, t_end=self.t if self.running else plan.options.t0 + self._marks * self.period)
         resolved, given = plan.compiled.resolved, self._called.given
         begin = Start.of(resolved, plan.options.t0, plan.par, self._starts)
@@ -204,7 +205,9 @@ class DiagramStepper(Stepped):
                 "stepper: the motion is not made once more",
                 "what blocks of Python's give is kept of the first calls",
             )
-            raise refusal(what, f"{len(given)} calls", rule, "look at signals while the loop goes on, or reset earlier")
+            raise SymofrosError(
+                what, f"{len(given)} calls", rule, "look at signals while the loop goes on, or reset earlier"
+            )
         ended.loop.fault = live.fault
         return examined_run(plan, ended, given, self._called.kept())
 
@@ -219,7 +222,7 @@ class DiagramStepper(Stepped):
     def copy(self) -> NoReturn:
         """Refused."""
         rule = "blocks of Python's may keep what can't be copied"
-        raise refusal(
+        raise SymofrosError(
             "DiagramStepper: no copy", repr(self), rule, "make another one by Simulation.stepper, and step it as far"
         )
 

@@ -196,12 +196,10 @@ def _check_plane(wired: Wired, text: str) -> None:
     shape = wired.shape(wired.output(name))
     if index is not None or len(shape) != 1 or shape[0] < 2:
         raise DescriptionError(
-            Problem(
-                f"plot: '{text:.80}' over a plane",
-                "one entry" if index is not None else f"shape {shape}",
-                "with xy, the second entry of a signal is drawn over its first",
-                "name a vector of two entries or more, or leave xy out",
-            )
+            f"plot: '{text:.80}' over a plane",
+            "one entry" if index is not None else f"shape {shape}",
+            "with xy, the second entry of a signal is drawn over its first",
+            "name a vector of two entries or more, or leave xy out",
         )
 
 
@@ -317,12 +315,10 @@ def _output(
     if block not in blocks:
         known = [*blocks, *outlets]
         raise DescriptionError(
-            Problem(
-                f"diagram '{name}': no block '{block:.80}'",
-                f"source '{text:.80}'",
-                "a source is written block.port",
-                did_you_mean(block, known) or "add the block",
-            )
+            f"diagram '{name}': no block '{block:.80}'",
+            f"source '{text:.80}'",
+            "a source is written block.port",
+            did_you_mean(block, known) or "add the block",
         )
     there = [item.name for item in ports[block].outputs]
     if not port and len(there) == 1:
@@ -330,12 +326,10 @@ def _output(
     if port not in there:
         fault = f"has no output '{port}'" if port else f"has {len(there)} outputs, and none is named"
         raise DescriptionError(
-            Problem(
-                f"diagram '{name}': block '{block}' {fault}",
-                f"source '{text}'",
-                f"outputs: {', '.join(there) or 'none'}",
-                did_you_mean(port, there) or "name one of them",
-            )
+            f"diagram '{name}': block '{block}' {fault}",
+            f"source '{text}'",
+            f"outputs: {', '.join(there) or 'none'}",
+            did_you_mean(port, there) or "name one of them",
         )
     return block, port
 

@@ -24,7 +24,7 @@ from symofros.diagrams.program.compiled import (
 )
 from symofros.diagrams.program.fused_functions import Fuser
 from symofros.diagrams.program.layout import Part
-from symofros.errors import ExportError, Problem
+from symofros.errors import ExportError
 from symofros.exports.c.c_package import INTEGRATOR_HEADERS
 from symofros.exports.c.event_plan import EventPlan, planned
 from symofros.exports.c.parameter_check import Judged
@@ -171,37 +171,24 @@ def _refuse(resolved: Resolved, stepping: Stepping) -> None:
     external = [name for name, block in wired.blocks.items() if isinstance(block, ExternalBlock)]
     if external:
         raise ExportError(
-            Problem(
-                f"diagram '{wired.name}': no C program",
-                "; ".join(f"block '{name}' calls Python" for name in external),
-                "a program of its own has no Python in it",
-                "leave it out, or make what it takes an outlet and what it gives an inlet",
-            )
+            f"diagram '{wired.name}': no C program",
+            "; ".join(f"block '{name}' calls Python" for name in external),
+            "a program of its own has no Python in it",
+            "leave it out, or make what it takes an outlet and what it gives an inlet",
         )
     if stepping.method.kind not in ("explicit", "semi_implicit"):
         raise ExportError(
-            Problem(
-                f"diagram '{wired.name}': method '{stepping.method.name}'",
-                "an implicit method",
-                "diagrams step by explicit methods",
-                "use rk4 or dopri5",
-            )
+            f"diagram '{wired.name}': method '{stepping.method.name}'",
+            "an implicit method",
+            "diagrams step by explicit methods",
+            "use rk4 or dopri5",
         )
 
 
 def _part_files(
     resolved: Resolved, write: Fuser, number: int, start: tuple[Array, Array], stepping: Stepping, generator: str
 ) -> dict[str, str]:
-    """Name -> text of the files of one part.
-
-    Args:
-        resolved: The diagram.
-        write: Writes functions of its parts.
-        number: Number of the part.
-        start: Its first q, v.
-        stepping: How it steps.
-        generator: Name and version.
-    """
+    """Name -> text of the files of one part."""
     layout, part = resolved.layout, resolved.layout.parts[number]
     record, c_name = record_of(resolved, part), f"{identifier(resolved.wired.name)}_part{number}"
     q, v = start

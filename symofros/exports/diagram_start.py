@@ -48,12 +48,6 @@ class FirstMotion:
 def first_motion(diagram: Diagram, interface: Interface, outputs: Sequence[str], stepping: Stepping) -> FirstMotion:
     """Begin a diagram as its package is to begin, and note what a run from Python notes there.
 
-    Args:
-        diagram: The diagram.
-        interface: What its package shows.
-        outputs: Signals that the program tells.
-        stepping: How the parts step.
-
     Raises:
         AssemblyError: A first state closes no loop.
         SymofrosError: The first accelerations are not finite.

@@ -18,7 +18,7 @@ from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation, compile_system
 from symofros.description import System
 from symofros.diagrams.diagram import Diagram
-from symofros.errors import DescriptionError, ExportError, Problem, UnknownNameError, did_you_mean
+from symofros.errors import DescriptionError, ExportError, UnknownNameError, did_you_mean
 from symofros.exports.c.c_package import write_c_package
 from symofros.exports.c.event_plan import TARGETS as EVENT_TARGETS
 from symofros.exports.c.event_plan import event_plan
@@ -160,12 +160,10 @@ def export(
         Compilation(system).record.refuse_rigid_contacts(f"export: '{target}'")
     if functions and target not in _TARGETS_WITH_CHOSEN_FUNCTIONS:
         raise ExportError(
-            Problem(
-                f"export: '{target}' has functions of its own",
-                ", ".join(functions),
-                f"functions are chosen for {' and '.join(_TARGETS_WITH_CHOSEN_FUNCTIONS)}",
-                "leave `functions` out",
-            )
+            f"export: '{target}' has functions of its own",
+            ", ".join(functions),
+            f"functions are chosen for {' and '.join(_TARGETS_WITH_CHOSEN_FUNCTIONS)}",
+            "leave `functions` out",
         )
     if target in _DESCRIBED:
         event_plan(
@@ -189,12 +187,10 @@ def _refuse_of_models(diagram: Diagram, **given: object) -> None:
     stated = [name for name, value in given.items() if value]
     if stated:
         raise ExportError(
-            Problem(
-                f"diagram '{diagram.name}': {stated[0]} is an argument of models",
-                ", ".join(stated),
-                "a diagram states where its mechanisms start and which functions its blocks need",
-                "add_model(..., start={...}) for a start, `outputs` for signals; or export a mechanism alone",
-            )
+            f"diagram '{diagram.name}': {stated[0]} is an argument of models",
+            ", ".join(stated),
+            "a diagram states where its mechanisms start and which functions its blocks need",
+            "add_model(..., start={...}) for a start, `outputs` for signals; or export a mechanism alone",
         )
 
 
@@ -204,12 +200,10 @@ def _export_diagram(
     """A diagram as a program, its inlets inputs, its outlets outputs."""
     if target not in _DIAGRAMS:
         raise ExportError(
-            Problem(
-                f"diagram '{diagram.name}': no target '{target}'",
-                target,
-                f"a diagram becomes a program, function of Matlab, block, FMU or module: {', '.join(_DIAGRAMS)}",
-                "use target 'c', or export its mechanisms alone",
-            )
+            f"diagram '{diagram.name}': no target '{target}'",
+            target,
+            f"a diagram becomes a program, function of Matlab, block, FMU or module: {', '.join(_DIAGRAMS)}",
+            "use target 'c', or export its mechanisms alone",
         )
     check_folder(folder)
     return _DIAGRAMS[target](diagram, folder, outputs, stepping, GENERATOR)
@@ -222,15 +216,15 @@ def _stepping(given: Mapping[str, Any]) -> Stepping:
     known = [item.name for item in METHODS.values() if not item.family.multistep]
     if method not in known:
         raise UnknownNameError(
-            Problem(f"export: no method '{method}'", f"'{method}'", ", ".join(known), method_meant(method, known))
+            f"export: no method '{method}'", f"'{method}'", ", ".join(known), method_meant(method, known)
         )
     for label in ("dt", "rtol", "atol"):
         value = chosen[label]
         if not (np.isfinite(value) and value > 0):
-            raise ExportError(Problem(f"export: {label} is not positive", str(value), f"{label} > 0", "leave it out"))
+            raise ExportError(f"export: {label} is not positive", str(value), f"{label} > 0", "leave it out")
         if label != "dt" and label in given and not METHODS[method].adaptive:
             what, rule = f"export: {label} has no effect", "it bounds errors of adaptive methods; others step by dt"
-            raise ExportError(Problem(what, f"method '{method}'", rule, f"leave {label} out, or method='dopri5'"))
+            raise ExportError(what, f"method '{method}'", rule, f"leave {label} out, or method='dopri5'")
     return Stepping(METHODS[method], **{name: float(chosen[name]) for name in ("dt", "rtol", "atol", "beam_limit")})
 
 
@@ -326,12 +320,10 @@ def _reactions(system: System) -> tuple[str, ...]:
 def _refuse_variational(system: System, stepping: Stepping) -> None:
     if stepping.method.family.trees_only and system.constraints:
         raise ExportError(
-            Problem(
-                "export: 'variational' steps trees only",
-                f"'{system.name}' has constraints",
-                "its principle is written for free coordinates",
-                "use rk4",
-            )
+            "export: 'variational' steps trees only",
+            f"'{system.name}' has constraints",
+            "its principle is written for free coordinates",
+            "use rk4",
         )
 
 
@@ -342,12 +334,10 @@ def _outputs(known: Sequence[str], generated: Sequence[str], wanted: Sequence[st
     for frame in wanted:
         if frame not in made:
             raise UnknownNameError(
-                Problem(
-                    f"export: no frame '{frame}' among those generated",
-                    ", ".join(made[:12]),
-                    "outputs are frames of the model",
-                    did_you_mean(frame, made or list(known)),
-                )
+                f"export: no frame '{frame}' among those generated",
+                ", ".join(made[:12]),
+                "outputs are frames of the model",
+                did_you_mean(frame, made or list(known)),
             )
     return tuple(wanted)
 
@@ -363,11 +353,9 @@ def _start(model: Model, given: Mapping[str, float]) -> ClosedStart:
             v[model.names.v.index(speed)] = value
         else:
             raise UnknownNameError(
-                Problem(
-                    f"export: no coordinate or speed '{label}'",
-                    label,
-                    "start gives coordinates by name, speeds by d + name",
-                    did_you_mean(label, [*model.names.q, *(f"d{speed}" for speed in model.names.v)]),
-                )
+                f"export: no coordinate or speed '{label}'",
+                label,
+                "start gives coordinates by name, speeds by d + name",
+                did_you_mean(label, [*model.names.q, *(f"d{speed}" for speed in model.names.v)]),
             )
     return closed_start(model, q, v, *stated_names(model.names.q, model.names.v, given))

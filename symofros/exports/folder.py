@@ -10,7 +10,7 @@ from pathlib import Path
 
 from symofros.base.names import identifier, package_name
 from symofros.base.stored import write_atomically
-from symofros.errors import ExportError, Problem
+from symofros.errors import ExportError
 
 MANIFEST = "symofros-export.json"
 _FORMAT = 1
@@ -64,11 +64,6 @@ def check_folder(folder: Path) -> dict[str, str]:
 def check_same(folder: Path, target: str, name: str) -> None:
     """Refuse a folder with an export of another kind or of another model, whose files a new export would remove.
 
-    Args:
-        folder: Folder that an export is to be written to.
-        target: Kind of export.
-        name: Name of the model.
-
     Raises:
         ExportError: It holds another export, or something that is none of ours.
     """
@@ -78,23 +73,19 @@ def check_same(folder: Path, target: str, name: str) -> None:
     same_name = stated.get("name") in (identifier(name), package_name(name))  # Of a description, or of code.
     if stated.get("target") != target or not same_name:
         raise ExportError(
-            Problem(
-                f"'{folder.name}' holds another export, which would be removed",
-                f"'{stated.get('target')}' of '{stated.get('name')}', where '{target}' of '{name}' is to be written",
-                "a folder has one export; writing it anew replaces its files",
-                "choose another folder",
-            )
+            f"'{folder.name}' holds another export, which would be removed",
+            f"'{stated.get('target')}' of '{stated.get('name')}', where '{target}' of '{name}' is to be written",
+            "a folder has one export; writing it anew replaces its files",
+            "choose another folder",
         )
 
 
 def _foreign_file_error(folder: Path, found: str) -> ExportError:
     return ExportError(
-        Problem(
-            f"'{folder}' is not overwritten",
-            found,
-            "an export goes to a new folder, an empty one, or one of an earlier export",
-            "choose another folder, or empty this one yourself",
-        )
+        f"'{folder}' is not overwritten",
+        found,
+        "an export goes to a new folder, an empty one, or one of an earlier export",
+        "choose another folder, or empty this one yourself",
     )
 
 
@@ -119,12 +110,10 @@ def write_folder(
         path = folder / old
         if path.is_file() and _digest(path.read_bytes()) != digest:
             raise ExportError(
-                Problem(
-                    f"'{path}' is not overwritten",
-                    "it was changed since it was exported",
-                    "an export replaces only files that are as it wrote them",
-                    "move your changes elsewhere, or export to another folder",
-                )
+                f"'{path}' is not overwritten",
+                "it was changed since it was exported",
+                "an export replaces only files that are as it wrote them",
+                "move your changes elsewhere, or export to another folder",
             )
     contents = {name: text.encode() if isinstance(text, str) else text for name, text in files.items()}
     for new in contents:
@@ -143,12 +132,10 @@ def write_folder(
         _write_manifest(folder, target, name, generator, digests)
     except OSError as error:
         raise ExportError(
-            Problem(
-                f"'{folder}' can't be written",
-                str(error),
-                "a folder that can be written",
-                "check its rights and the space left",
-            )
+            f"'{folder}' can't be written",
+            str(error),
+            "a folder that can be written",
+            "check its rights and the space left",
         ) from error
     return Exported(folder, target, name, tuple(folder / name for name in contents), notes)
 

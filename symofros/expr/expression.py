@@ -9,7 +9,7 @@ from dataclasses import dataclass, field
 
 from symofros.base.arguments import check_argument
 from symofros.base.names import QUOTE, RESERVED, is_rate_symbol, quoted, symbol_of
-from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.errors import SymofrosError, UnknownNameError, did_you_mean
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.numerics.extended import Extended, extended_context, extended_rule
@@ -111,11 +111,6 @@ class NoValueError(SymofrosError, ArithmeticError):
 def lower(expression: Expression, graph: Graph, bindings: Mapping[str, Edge]) -> Edge:
     """Put a formula into a graph.
 
-    Args:
-        expression: The formula.
-        graph: Graph that receives the operations.
-        bindings: The edge of each symbol.
-
     Raises:
         KeyError: A symbol has no binding.
         NoValueError: A constant part divides by zero, leaves a function's domain or has no end.
@@ -126,12 +121,10 @@ def lower(expression: Expression, graph: Graph, bindings: Mapping[str, Edge]) ->
             raise OverflowError(f"{expression!s:.80} is infinite")
     except ArithmeticError as error:
         raise NoValueError(
-            Problem(
-                f"formula '{expression!s:.80}' has no value",
-                str(error),
-                "constant parts are finite: no division by zero, each within the domain of its function",
-                "mend the formula",
-            )
+            f"formula '{expression!s:.80}' has no value",
+            str(error),
+            "constant parts are finite: no division by zero, each within the domain of its function",
+            "mend the formula",
         ) from None
     return edge
 
@@ -187,7 +180,7 @@ def evaluate(expression: Expression | float, values: Mapping[str, float]) -> flo
     if missing:
         name = min(missing)
         rule, remedy = "each symbol of a formula has a value", did_you_mean(name, values)
-        raise UnknownNameError(Problem(f"'{name}' has no value", ", ".join(map(str, values)) or "none", rule, remedy))
+        raise UnknownNameError(f"'{name}' has no value", ", ".join(map(str, values)) or "none", rule, remedy)
     used = sorted(expression.symbols())
     for name in used:
         if not isinstance(values[name], float):
@@ -202,10 +195,6 @@ def evaluate(expression: Expression | float, values: Mapping[str, float]) -> flo
 
 def evaluate_extended(expression: Expression | float, values: Mapping[str, Extended]) -> Extended:
     """The value of a formula in extended precision.
-
-    Args:
-        expression: The formula, or a number already.
-        values: Extended number of each symbol.
 
     Raises:
         KeyError: A symbol has no value.

@@ -190,10 +190,6 @@ class Graph:
     def call(self, name: str, *args: Edge) -> Edge:
         """A function of the op table; signs move out of odd and even functions, numbers fold.
 
-        Args:
-            name: Name in the op table.
-            args: Operand edges.
-
         Raises:
             KeyError: No such function.
             ArithmeticError: The folded value is not a number.

@@ -63,13 +63,7 @@ def instant_operands(graph: Graph, edges: Sequence[Edge], *, of_states: bool = F
 
 
 def operands_function(name: str, graph: Graph, edges: Sequence[Edge]) -> Function:
-    """A function of time that gives the operands of formulas, and what kind each is; see `instant_operands`.
-
-    Args:
-        name: Name of the function.
-        graph: Graph of the formulas.
-        edges: Formulas.
-    """
+    """A function of time that gives the operands of formulas, and what kind each is; see `instant_operands`."""
     operands = instant_operands(graph, edges)
     kinds = tuple(graph.constant(float(operand.kind)) for operand in operands)
     shape, values = (len(operands),), tuple(operand.edge for operand in operands)

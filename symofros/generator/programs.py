@@ -11,7 +11,7 @@ from typing import Any
 from symofros.base.functions import FUNCTIONS
 from symofros.base.options import Options
 from symofros.base.routes import ROUTES, Choice, choose, taken
-from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
+from symofros.errors import DescriptionError, UnknownNameError, did_you_mean
 from symofros.expr.garbage import without_collection
 from symofros.expr.graph import Graph
 from symofros.expr.program import Function, Output, Program
@@ -158,12 +158,7 @@ def requested(tree: SpanningTree, options: Options) -> tuple[Request, ...]:
     for name in options.functions:
         if name not in FUNCTIONS:
             raise UnknownNameError(
-                Problem(
-                    f"options: no function '{name}'",
-                    name,
-                    "a function of the model",
-                    did_you_mean(name, FUNCTIONS),
-                )
+                f"options: no function '{name}'", name, "a function of the model", did_you_mean(name, FUNCTIONS)
             )
     frames = _frames(tree, options)
     rows = [FUNCTIONS[name] for name in options.functions]
@@ -171,12 +166,10 @@ def requested(tree: SpanningTree, options: Options) -> tuple[Request, ...]:
     requests += [Request(row.name, frame) for row in rows if row.of_frame for frame in frames]
     if not requests:
         raise DescriptionError(
-            Problem(
-                "options: nothing to generate",
-                "no functions",
-                "functions name at least one, and frames of it",
-                "name some, or leave functions out",
-            )
+            "options: nothing to generate",
+            "no functions",
+            "functions name at least one, and frames of it",
+            "name some, or leave functions out",
         )
     return tuple(requests)
 
@@ -189,11 +182,9 @@ def _frames(tree: SpanningTree, options: Options) -> list[str]:
     for name in options.frames:
         if not any(name in (frame.name, frame.qualified) for frame in tree.frames):
             raise UnknownNameError(
-                Problem(
-                    f"system '{tree.system.name}': no frame '{name}'",
-                    name,
-                    "frames are those of its bodies",
-                    did_you_mean(name, names),
-                )
+                f"system '{tree.system.name}': no frame '{name}'",
+                name,
+                "frames are those of its bodies",
+                did_you_mean(name, names),
             )
     return [tree.frame(name).name for name in options.frames]

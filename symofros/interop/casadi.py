@@ -29,7 +29,7 @@ from symofros.base.options import Options
 from symofros.base.stored import write_atomically
 from symofros.compiler import Compilation
 from symofros.description import System
-from symofros.errors import CompileError, Problem, UnknownNameError, did_you_mean
+from symofros.errors import CompileError, UnknownNameError, did_you_mean
 from symofros.interop.casadi_externals import External, Input, Output, gathered, slopes_of
 from symofros.interop.casadi_sources import Sources
 from symofros.interop.coordinates import Coordinates, Operations
@@ -191,12 +191,10 @@ class Dynamics:
         if f"frame_position {frame}" not in self.functions:
             asked = [name.removeprefix("frame_position ") for name in self.functions if name not in RULES]
             raise UnknownNameError(
-                Problem(
-                    f"no function of the position of frame '{frame}'",
-                    ", ".join(asked) or "no frames",
-                    "frames are those that `frames` of Dynamics names",
-                    did_you_mean(frame, asked),
-                )
+                f"no function of the position of frame '{frame}'",
+                ", ".join(asked) or "no frames",
+                "frames are those that `frames` of Dynamics names",
+                did_you_mean(frame, asked),
             )
         return self._called(f"frame_position {frame}", q=q, par=par)
 
@@ -212,7 +210,7 @@ class Dynamics:
             if (tuple(shape) or (1,)).count(len(names)) == 0:
                 listed = ", ".join(names[:12]) or "it is empty"
                 found, rule = f"shape {tuple(shape)}", f"an entry for each of {len(names)}: {listed}"
-                raise InteropError(Problem(f"{function}: {name} does not fit", found, rule, "give each its entry"))
+                raise InteropError(f"{function}: {name} does not fit", found, rule, "give each its entry")
         return self.functions[function](*given.values())
 
 

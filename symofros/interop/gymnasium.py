@@ -63,7 +63,9 @@ class Task:
         largest, nu = np.asarray(self.largest, dtype=np.float64), self.model.nu
         if largest.shape != (nu,) or not (largest >= 0.0).all():
             found, rule = str(self.largest)[:60], f"({nu},), none negative"
-            raise _misfit("task: bounds of inputs do not fit", found, rule, "give a largest magnitude for each input")
+            raise rules.InteropError(
+                "task: bounds of inputs do not fit", found, rule, "give a largest magnitude for each input"
+            )
         _check_count("task: no number of substeps", self.substeps, "substeps=1")
 
     def begin(self, rng: np.random.Generator) -> tuple[Array, Array, Array]:
@@ -97,7 +99,9 @@ class Task:
         for name, found in (("reward", rewards), ("fails", failed)):
             if np.shape(found) != (n,):
                 remedy = "return one number for each of the n states; np.full(len(q), x) where all have the same"
-                raise _misfit(f"task: {name} does not fit", str(np.shape(found)), f"shape ({n},) for n = {n}", remedy)
+                raise rules.InteropError(
+                    f"task: {name} does not fit", str(np.shape(found)), f"shape ({n},) for n = {n}", remedy
+                )
         return rewards, failed
 
     @property
@@ -299,7 +303,7 @@ def _rows(name: str, values: Sequence[Any], size: int) -> Array:
     odd = next((np.shape(row) for row in values if np.shape(row) != (1, size)), None)
     if odd is not None:
         remedy = "return one row for each of the n episodes that are asked for"
-        raise _misfit(f"task: {name} do not fit", str(odd), f"shape (1, {size}) for n = 1", remedy)
+        raise rules.InteropError(f"task: {name} do not fit", str(odd), f"shape (1, {size}) for n = 1", remedy)
     return np.array(values, dtype=np.float64).reshape(len(values), size)
 
 
@@ -314,7 +318,7 @@ def _checked_options(options: Mapping[str, Any] | None, known: tuple[str, ...]) 
     for name in options or {}:
         if name not in known:
             what, rule = f"reset: no option '{name!s:.40}'", f"options are {' and '.join(known)}"
-            raise _misfit(what, repr(name)[:60], rule, "leave it out; first states are drawn by Task.start")
+            raise rules.InteropError(what, repr(name)[:60], rule, "leave it out; first states are drawn by Task.start")
     return (options or {}).get("par")
 
 
@@ -326,7 +330,7 @@ def _checked_mask(mask: Any, count: int) -> np.ndarray[Any, np.dtype[np.bool_]]:
     if array.dtype != bool or array.shape != (count,) or not array.any():
         found = f"{array.dtype} of shape {array.shape}, {int(np.count_nonzero(array))} of them true"
         rule = f"one bool for each of {count} environments, one of them true at least"
-        raise _misfit("reset: reset_mask does not fit", found, rule, "leave it out to reset all")
+        raise rules.InteropError("reset: reset_mask does not fit", found, rule, "leave it out to reset all")
     return array
 
 
@@ -339,12 +343,8 @@ def _checked_seeds(seed: int | Sequence[int | None] | None, count: int) -> Seque
     seeds = list(seed) if isinstance(seed, Sequence | np.ndarray) and not isinstance(seed, str) else []
     if len(seeds) != count or not all(one is None or isinstance(one, int | np.integer) for one in seeds):
         rule = f"a whole number, or one (or None) for each of {count}"
-        raise _misfit("reset: seeds do not fit", f"{type(seed).__name__} {seed!r:.60}", rule, "seed=0")
+        raise rules.InteropError("reset: seeds do not fit", f"{type(seed).__name__} {seed!r:.60}", rule, "seed=0")
     return [None if one is None else int(one) for one in seeds]
-
-
-def _misfit(what: str, found: str, rule: str, remedy: str) -> rules.InteropError:
-    return rules.InteropError(Problem(what, found, rule, remedy))
 
 
 def _reset_needed(found: str) -> Any:
@@ -356,7 +356,7 @@ def _reset_needed(found: str) -> Any:
 def _check_count(what: str, count: object, remedy: str) -> None:
     """Refuse what is no whole number from 1 on."""
     if isinstance(count, bool) or not isinstance(count, int | np.integer) or count < 1:
-        raise _misfit(what, repr(count)[:60], "a whole number from 1 on", remedy)
+        raise rules.InteropError(what, repr(count)[:60], "a whole number from 1 on", remedy)
 
 
 def _bounds(task: Task) -> tuple[Array, Array]:

@@ -18,7 +18,7 @@ from functools import cache
 from pathlib import Path
 from typing import Any
 
-from symofros.errors import CompileError, Problem
+from symofros.errors import CompileError
 from symofros.interop.coordinates import Operations
 from symofros.interop.rules import RULES, InteropError, framework, second_derivatives
 from symofros.interop.wrapped import WrappedDynamics
@@ -134,12 +134,10 @@ class Dynamics(WrappedDynamics):
         kernel = self.model.kernel(function)
         if not isinstance(kernel, CompiledKernel):
             raise InteropError(
-                Problem(
-                    f"{function} can't be called from XLA",
-                    "the model runs on the interpreter",
-                    "custom calls are C",
-                    "sf.compile(system) with backend 'c'",
-                )
+                f"{function} can't be called from XLA",
+                "the model runs on the interpreter",
+                "custom calls are C",
+                "sf.compile(system) with backend 'c'",
             )
         return kernel
 
@@ -154,7 +152,7 @@ class Dynamics(WrappedDynamics):
 
 def _single(function: str, what: str, found: str, remedy: str) -> InteropError:
     return InteropError(
-        Problem(f"{function}: {what} can't be taken", found, "models compute in doubles, of numbers in doubles", remedy)
+        f"{function}: {what} can't be taken", found, "models compute in doubles, of numbers in doubles", remedy
     )
 
 
@@ -162,12 +160,10 @@ def _register(name: str, kernel: CompiledKernel, slot: int) -> None:
     library = _library()
     if slot >= library.sym_xla_slots():
         raise InteropError(
-            Problem(
-                "no slot is left for another function",
-                f"{slot} functions of models in this process",
-                f"{library.sym_xla_slots()} functions in all",
-                "start another process",
-            )
+            "no slot is left for another function",
+            f"{slot} functions of models in this process",
+            f"{library.sym_xla_slots()} functions in all",
+            "start another process",
         )
     many = kernel.in_lanes()
     ffi_address = [int(_address(pointer)) for pointer in (kernel.model, kernel.function, many.function)]

@@ -55,13 +55,11 @@ def second_derivatives(model: Model, function: str) -> InteropError:
     """Error for a derivative that a framework differentiates again."""
     product = " or model.inverse_dynamics_hvp(...)" if function == "inverse_dynamics" else ""
     return InteropError(
-        Problem(
-            f"{function} of model '{model.record.name}': second derivatives are not available here",
-            "a derivative is differentiated again",
-            "frameworks are given exact first derivatives",
-            f"take a method of first order, such as Gauss-Newton, model.evaluate('{function}_hessian', ...){product}; "
-            "symofros.interop.casadi has Hessians",
-        )
+        f"{function} of model '{model.record.name}': second derivatives are not available here",
+        "a derivative is differentiated again",
+        "frameworks are given exact first derivatives",
+        f"take a method of first order, such as Gauss-Newton, model.evaluate('{function}_hessian', ...){product}; "
+        "symofros.interop.casadi has Hessians",
     )
 
 
@@ -101,17 +99,13 @@ def check_record(record: ModelRecord) -> None:
     if record.driven:
         names = ", ".join(record.u_names[-record.driven :])
         raise InteropError(
-            Problem(
-                what,
-                f"inputs that prescribe motion: {names}",
-                "inputs are forces",
-                "replace the prescribed joint by one with an input",
-            )
+            what,
+            f"inputs that prescribe motion: {names}",
+            "inputs are forces",
+            "replace the prescribed joint by one with an input",
         )
     if record.timed:
-        raise InteropError(
-            Problem(what, "formulas depend on the time t", "wrapped functions take no time", "make t an input")
-        )
+        raise InteropError(what, "formulas depend on the time t", "wrapped functions take no time", "make t an input")
 
 
 def check_functions(record: ModelRecord) -> None:
@@ -135,7 +129,7 @@ def check_functions(record: ModelRecord) -> None:
             what = f"functions of model '{record.name}' are not offered to other frameworks"
             names = ", ".join(one.name for one in found)
             remedy = f"{remedy}, or step by sf.Steppers, sf.interop.gymnasium"
-            raise InteropError(Problem(what, f"{kind}: {names}", f"{kind} {rule}", remedy))
+            raise InteropError(what, f"{kind}: {names}", f"{kind} {rule}", remedy)
 
 
 def outputs(model: Model, function: str, given: Mapping[str, Any]) -> dict[str, np.ndarray[Any, Any]]:

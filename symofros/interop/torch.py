@@ -16,7 +16,6 @@ from typing import Any
 
 import numpy as np
 
-from symofros.errors import Problem
 from symofros.interop.coordinates import Operations
 from symofros.interop.rules import RULES, InteropError, framework, outputs, second_derivatives
 from symofros.interop.wrapped import WrappedDynamics
@@ -58,12 +57,10 @@ class Dynamics(WrappedDynamics):
                 continue
             if not tensor or x.dtype != torch.float64 or x.device.type != "cpu":
                 raise InteropError(
-                    Problem(
-                        f"{function}: '{label}' can't be taken",
-                        f"{x.dtype} on {x.device}" if tensor else type(x).__name__,
-                        "tensors of float64 on the CPU",
-                        f"{label}.double().cpu()" if tensor else f"torch.as_tensor({label}, dtype=torch.float64)",
-                    )
+                    f"{function}: '{label}' can't be taken",
+                    f"{x.dtype} on {x.device}" if tensor else type(x).__name__,
+                    "tensors of float64 on the CPU",
+                    f"{label}.double().cpu()" if tensor else f"torch.as_tensor({label}, dtype=torch.float64)",
                 )
             self._check_shape(function, label, tuple(x.shape))
         batch = torch.broadcast_shapes(*(x.shape[:-1] for x in given.values() if x is not None))

@@ -5,7 +5,6 @@ from __future__ import annotations
 from abc import ABC, abstractmethod
 from typing import Any
 
-from symofros.errors import Problem
 from symofros.interop.coordinates import Coordinates, Operations
 from symofros.interop.rules import InteropError, check_functions
 from symofros.runtime.model import Model
@@ -69,4 +68,4 @@ class WrappedDynamics(ABC):
         size = self._sizes.get(label, self.model.nv)
         if not shape or shape[-1] != size:
             what = f"{function}: '{label}' has the wrong shape"
-            raise InteropError(Problem(what, str(tuple(shape)), f"(..., {size})", "check its size"))
+            raise InteropError(what, str(tuple(shape)), f"(..., {size})", "check its size")

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import real_array
-from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
+from symofros.errors import ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array, Numbers
 from symofros.runtime.names import Names as Names
 from symofros.runtime.names import stacked
@@ -80,23 +80,19 @@ class Arguments:
         array = real_array(self.by_name(group, values) if isinstance(values, Mapping) else values, dtype)
         if array is None:
             raise ShapeError(
-                Problem(
-                    f"model '{self.record.name}': {group} is not an array of numbers",
-                    f"{type(values).__name__} {values!r:.60}",
-                    f"{group} is an array of real numbers of shape (..., {size})",
-                    self._hint(group) or "convert texts, dates and complex numbers, fill in masked ones before",
-                )
+                f"model '{self.record.name}': {group} is not an array of numbers",
+                f"{type(values).__name__} {values!r:.60}",
+                f"{group} is an array of real numbers of shape (..., {size})",
+                self._hint(group) or "convert texts, dates and complex numbers, fill in masked ones before",
             )
         if group == "t":
             return array[..., np.newaxis]
         if array.ndim == 0 or array.shape[-1] != size:
             raise ShapeError(
-                Problem(
-                    f"model '{self.record.name}': {group} has the wrong shape",
-                    str(array.shape),
-                    f"{group} has shape (..., {size})",
-                    self._hint(group) or f"give {size} numbers, or rows of {size} for a batch",
-                )
+                f"model '{self.record.name}': {group} has the wrong shape",
+                str(array.shape),
+                f"{group} has shape (..., {size})",
+                self._hint(group) or f"give {size} numbers, or rows of {size} for a batch",
             )
         return array
 
@@ -119,12 +115,10 @@ class Arguments:
             stated = {group: self.by_name(group, x) for group, x in given.items() if x is not None}
             shown = ", ".join(f"{group} {np.shape(x)}" for group, x in stated.items())
             raise ShapeError(
-                Problem(
-                    f"{name}: batch dimensions do not broadcast",
-                    shown,
-                    "all but the last dimension of each array broadcast together",
-                    "give each array the same leading dimensions, or none",
-                )
+                f"{name}: batch dimensions do not broadcast",
+                shown,
+                "all but the last dimension of each array broadcast together",
+                "give each array the same leading dimensions, or none",
             ) from None
 
     def _frame(self, frame: str) -> str:
@@ -142,4 +136,4 @@ class Arguments:
     def _unknown(self, kind: str, name: str, known: tuple[str, ...], rule: str) -> UnknownNameError:
         listed = f"{len(known)} {kind}s" + (": " + ", ".join(known[:12]) if known else "")
         what = f"model '{self.record.name}': no {kind} '{str(name)[:80]}'"
-        return UnknownNameError(Problem(what, listed, rule, did_you_mean(name, known) or "use another model"))
+        return UnknownNameError(what, listed, rule, did_you_mean(name, known) or "use another model")

@@ -239,7 +239,7 @@ class Functions(Arguments):
                 values[group] = np.zeros(0)
             elif group not in values:
                 takes = ", ".join(FUNCTIONS[name].inputs)
-                raise ShapeError(Problem(f"{name}: no {group}", f"{', '.join(inputs) or 'nothing'}", takes, "add it"))
+                raise ShapeError(f"{name}: no {group}", f"{', '.join(inputs) or 'nothing'}", takes, "add it")
         return self._call(name, public, values, par, out)
 
     def formulas(self, formulas: Sequence[Any], derivatives: bool = True, reactions: bool = False) -> Kernel:
@@ -372,11 +372,9 @@ class Functions(Arguments):
         if (name, frame) not in self._kernels:
             what = f"{name} of frame '{frame}'" if frame else name
             raise SymofrosError(
-                Problem(
-                    f"model '{self.record.name}': {what} was not generated",
-                    ", ".join(sorted({key[0] for key in self._kernels})),
-                    "Options(functions=…, frames=…) generates what it names, and nothing else",
-                    "add it to the options, or leave functions out to have each made when first called",
-                )
+                f"model '{self.record.name}': {what} was not generated",
+                ", ".join(sorted({key[0] for key in self._kernels})),
+                "Options(functions=…, frames=…) generates what it names, and nothing else",
+                "add it to the options, or leave functions out to have each made when first called",
             )
         return tuple(self._kernels)

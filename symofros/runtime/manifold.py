@@ -33,7 +33,7 @@ from symofros.base.rotations import (
     screw_twist,
 )
 from symofros.base.rotations import normalized as unit_quaternion
-from symofros.errors import Problem, ShapeError
+from symofros.errors import ShapeError
 from symofros.native import native_number
 from symofros.runtime.calls.extension import UNIT_ROUNDING, available_type, begin
 from symofros.runtime.calls.kernel import Numbers
@@ -276,10 +276,8 @@ def _no_rotation(
     of_batch = f" in row {', '.join(map(str, place))}" if len(place) else ""
     divide = "model.normalized(q) divides by it" if group == "q" else "divide by it"
     return ShapeError(
-        Problem(
-            f"model '{record.name}': {name} holds a quaternion that is no rotation",
-            f"length {length:.6g} of {', '.join(record.vectors[group][first : first + 4])}{of_batch}",
-            f"quaternions are of unit length, to {UNIT_TOLERANCE:g}",
-            divide if length else "a body that is not turned has (0, 0, 0, 1), as in model.neutral()",
-        )
+        f"model '{record.name}': {name} holds a quaternion that is no rotation",
+        f"length {length:.6g} of {', '.join(record.vectors[group][first : first + 4])}{of_batch}",
+        f"quaternions are of unit length, to {UNIT_TOLERANCE:g}",
+        divide if length else "a body that is not turned has (0, 0, 0, 1), as in model.neutral()",
     )

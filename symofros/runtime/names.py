@@ -10,7 +10,7 @@ import numpy as np
 
 from symofros.base.arrays import real_array
 from symofros.base.names import coordinate_of, speed_of
-from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
+from symofros.errors import ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import ModelRecord
 
@@ -89,7 +89,7 @@ def stacked(record: ModelRecord, par: Array, argument: str, values: Mapping[str,
         "": ((), ()),
     }[kind]
     if not kind:
-        raise ShapeError(Problem(f"{what} has no names", repr(values)[:80], f"{argument} is an array", "give an array"))
+        raise ShapeError(f"{what} has no names", repr(values)[:80], f"{argument} is an array", "give an array")
     columns: list[Any] = list(defaults)
     given: set[str] = set()
     for stated, value in values.items():
@@ -97,15 +97,15 @@ def stacked(record: ModelRecord, par: Array, argument: str, values: Mapping[str,
         if not name:
             listed = ", ".join(names[:12]) + (", …" if len(names) > 12 else "") or f"no {kind}"
             remedy = did_you_mean(str(stated)[:80], names) or f"name {kind} of the model"
-            raise UnknownNameError(Problem(f"{what}: no '{str(stated)[:80]}'", listed, f"names are of {kind}", remedy))
+            raise UnknownNameError(f"{what}: no '{str(stated)[:80]}'", listed, f"names are of {kind}", remedy)
         if name in given:
             rule = f"each of the {kind} is named once"
-            raise ShapeError(Problem(f"{what}: '{name}' is named twice", ", ".join(map(str, values)), rule, "keep one"))
+            raise ShapeError(f"{what}: '{name}' is named twice", ", ".join(map(str, values)), rule, "keep one")
         array = real_array(value)
         if array is None:
             actual = f"{type(value).__name__} {value!r:.60}"
             rule = "a value is a number, or an array of numbers"
-            raise ShapeError(Problem(f"{what}: '{stated}' is not a number", actual, rule, "convert it before"))
+            raise ShapeError(f"{what}: '{stated}' is not a number", actual, rule, "convert it before")
         given.add(name)
         columns[names.index(name)] = array
     try:
@@ -113,4 +113,4 @@ def stacked(record: ModelRecord, par: Array, argument: str, values: Mapping[str,
     except ValueError:
         shapes = ", ".join(f"{name} {np.shape(value)}" for name, value in values.items())
         rule, remedy = "the values of a batch have shapes that broadcast together", "give each the same shape"
-        raise ShapeError(Problem(f"{what}: values do not broadcast", shapes, rule, remedy)) from None
+        raise ShapeError(f"{what}: values do not broadcast", shapes, rule, remedy) from None

@@ -14,7 +14,7 @@ from symofros.base.arrays import Array
 from symofros.base.events import Event, Named
 from symofros.base.manifold import ManifoldKind
 from symofros.base.measures import Measures
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 
 
 class Segment(NamedTuple):
@@ -366,7 +366,7 @@ class ModelRecord:
         """
         if acting := [name for name, event in self.events.items() if event.acts or event.terminal]:
             rule, remedy = "runs and steppers look for events", "leave them out: replace(system, events={})"
-            raise SymofrosError(Problem(f"{what}: events of model '{self.name}'", ", ".join(acting), rule, remedy))
+            raise SymofrosError(f"{what}: events of model '{self.name}'", ", ".join(acting), rule, remedy)
 
     def refuse_states(self, what: str, remedy: str = "leave out LuGre, Hysteresis, bristles, ForceState") -> None:
         """Refuse states of forces where nothing takes them; a remedy may be `model.carried`.
@@ -377,7 +377,7 @@ class ModelRecord:
         if self.state_names:
             found, rule = ", ".join(self.state_names[:8]), f"{what} is of coordinates and speeds alone"
             title = f"model '{self.name}' has states of forces: {what} takes none"
-            raise SymofrosError(Problem(title, found, rule, remedy))
+            raise SymofrosError(title, found, rule, remedy)
 
     def sampling_bounds(self) -> list[tuple[float, float]]:
         """Finite bounds a coordinate: its own, one turn for an angle, one unit otherwise."""
@@ -396,4 +396,4 @@ class ModelRecord:
 
 def _no_modes(what: str, found: str, choose: str, remedy: str) -> SymofrosError:
     """Joints with modes, where nothing chooses them."""
-    return SymofrosError(Problem(what, found, f"it has modes: {choose}", remedy))
+    return SymofrosError(what, found, f"it has modes: {choose}", remedy)

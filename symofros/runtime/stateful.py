@@ -8,7 +8,7 @@ from typing import Any, Self
 import numpy as np
 
 from symofros.base.functions import FUNCTIONS, INPUTS
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.runtime.beams import ElasticBeam
 from symofros.runtime.calls.kernel import Array, Kernel, Numbers, Precision
 from symofros.runtime.cuda.cuda_model import CudaModel
@@ -127,12 +127,10 @@ class StatefulModel(Model):
 
     def _refusal(self, rule: str) -> SymofrosError:
         return SymofrosError(
-            Problem(
-                f"model '{self.record.name}' has states of forces: this takes none",
-                ", ".join(self.record.state_names[:8]),
-                rule,
-                "model.carried has them among its speeds",
-            )
+            f"model '{self.record.name}' has states of forces: this takes none",
+            ", ".join(self.record.state_names[:8]),
+            rule,
+            "model.carried has them among its speeds",
         )
 
     def _kernel(self, name: str, frame: str, rule: str) -> Kernel:

@@ -13,7 +13,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.base.events import Event
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.runtime.calls import Kernel
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
@@ -144,4 +144,4 @@ def refuse_actions(events: Sequence[Event], what: str, remedy: str) -> None:
     named = [event.name for event in events if event.action]
     if named:
         rule = "an action begins the motion anew in the middle of a run, which one-step methods do"
-        raise SymofrosError(Problem(f"{what}: event '{named[0]}' has an action", "action", rule, remedy))
+        raise SymofrosError(f"{what}: event '{named[0]}' has an action", "action", rule, remedy)

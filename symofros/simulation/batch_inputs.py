@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array, numeric
-from symofros.errors import Problem, ShapeError, SymofrosError
+from symofros.errors import ShapeError, SymofrosError
 from symofros.runtime.model import Model
 from symofros.simulation.inputs import InputPlan, Inputs, Signal, plan_inputs
 
@@ -77,10 +77,6 @@ class GivenInputs:
 def sort_inputs(model: Model, u: Inputs | None) -> GivenInputs:
     """Sort inputs by whether they vary over a batch.
 
-    Args:
-        model: Names the inputs.
-        u: Inputs as `simulate_batch` takes them.
-
     Raises:
         ShapeError: An array does not fit.
         SymofrosError: A Python function.
@@ -91,24 +87,20 @@ def sort_inputs(model: Model, u: Inputs | None) -> GivenInputs:
         return _by_name(model, u)
     if callable(u):
         raise SymofrosError(
-            Problem(
-                "simulate_batch: inputs by a Python function",
-                repr(u)[:80],
-                "a batch steps in C alone",
-                "give formulas or Signals, or run sf.simulate for each",
-            )
+            "simulate_batch: inputs by a Python function",
+            repr(u)[:80],
+            "a batch steps in C alone",
+            "give formulas or Signals, or run sf.simulate for each",
         )
     if u is None:
         return GivenInputs(None, {}, {})
     values = numeric("u", u)
     if values.ndim == 0 or values.shape[-1] != model.nu:
         raise ShapeError(
-            Problem(
-                f"model '{model.record.name}': u has the wrong shape",
-                str(values.shape),
-                f"constant inputs have shape (..., {model.nu})",
-                "one row a trajectory, or one for all",
-            )
+            f"model '{model.record.name}': u has the wrong shape",
+            str(values.shape),
+            f"constant inputs have shape (..., {model.nu})",
+            "one row a trajectory, or one for all",
         )
     # What is not finite ends its own trajectory, not the batch.
     return GivenInputs(np.nan_to_num(values.reshape(-1, model.nu)[0]) if values.size else None, {-1: values}, {})

@@ -14,7 +14,7 @@ import numpy.typing as npt
 from symofros.base.arguments import CheckedCalls, check_fields
 from symofros.base.arrays import Array, numeric, rounding_of
 from symofros.base.names import coordinate_of
-from symofros.errors import ArgumentError, Problem, ShapeError, UnknownNameError, did_you_mean
+from symofros.errors import ArgumentError, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.model import Model, Rate
 from symofros.simulation.user_functions import check_called_with, named_function
 
@@ -60,7 +60,7 @@ class Signal(metaclass=CheckedCalls):
         else:
             return
         rule = "t (n) increases, values are (n), (n, nu) or (..., n, nu), all finite"
-        raise ShapeError(Problem("signal: not samples over time", found, rule, remedy))
+        raise ShapeError("signal: not samples over time", found, rule, remedy)
 
 
 def held_samples(times: Array, t: Array, end: Array | float = math.inf) -> Indices:
@@ -175,12 +175,10 @@ def plan_inputs(model: Model, u: Inputs | None) -> InputPlan:
             _refuse_infinite(name, float(value))
     else:
         raise ShapeError(
-            Problem(
-                f"model '{model.record.name}': u has the wrong shape",
-                str(array.shape),
-                f"constant inputs have shape ({len(names)},)",
-                "give a Signal or a function for inputs that vary: " + (", ".join(names[:8]) or "there are none"),
-            )
+            f"model '{model.record.name}': u has the wrong shape",
+            str(array.shape),
+            f"constant inputs have shape ({len(names)},)",
+            "give a Signal or a function for inputs that vary: " + (", ".join(names[:8]) or "there are none"),
         )
     return InputPlan(array)
 
@@ -194,12 +192,10 @@ def _signal_of_all(model: Model, signal: Signal, constant: Array) -> InputPlan:
     values = signal.values if signal.values.ndim > 1 else signal.values[:, np.newaxis]
     if values.shape[1:] != constant.shape:
         raise ShapeError(
-            Problem(
-                f"model '{model.record.name}': a signal of all inputs has the wrong shape",
-                str(signal.values.shape),
-                f"values are (n, {len(constant)})",
-                "give u={'name': Signal(...)} for single inputs",
-            )
+            f"model '{model.record.name}': a signal of all inputs has the wrong shape",
+            str(signal.values.shape),
+            f"values are (n, {len(constant)})",
+            "give u={'name': Signal(...)} for single inputs",
         )
     columns = [np.ascontiguousarray(values[:, i]) for i in range(values.shape[1])]
     linear = signal.kind == "linear"
@@ -213,23 +209,19 @@ def _by_name(model: Model, given: Mapping[str, Any], constant: Array) -> InputPl
     for name, value in given.items():
         if name not in names:
             raise UnknownNameError(
-                Problem(
-                    f"model '{model.record.name}': no input '{name}'",
-                    ", ".join(names[:12]) or "none",
-                    "inputs are listed in model.names.u",
-                    did_you_mean(name, names) or "declare it in the description",
-                )
+                f"model '{model.record.name}': no input '{name}'",
+                ", ".join(names[:12]) or "none",
+                "inputs are listed in model.names.u",
+                did_you_mean(name, names) or "declare it in the description",
             )
         i = names.index(name)
         if isinstance(value, Signal):
             if value.values.ndim != 1:
                 raise ShapeError(
-                    Problem(
-                        f"input '{name}': a signal of several inputs",
-                        str(value.values.shape),
-                        "one input takes values (n)",
-                        "pick a column",
-                    )
+                    f"input '{name}': a signal of several inputs",
+                    str(value.values.shape),
+                    "one input takes values (n)",
+                    "pick a column",
                 )
             plan.signals.append((i, value.t, value.values, value.kind == "linear"))
         elif isinstance(value, (int, float, np.floating)):
@@ -238,7 +230,7 @@ def _by_name(model: Model, given: Mapping[str, Any], constant: Array) -> InputPl
         elif callable(value):
             rule = "a function gives all inputs at once; one input takes a number, a formula text or a Signal"
             remedy = f"u=lambda t, q, v: [...], of {', '.join(names[:8])}"
-            raise ArgumentError(Problem(f"input '{name}' is a function", named_function(value), rule, remedy))
+            raise ArgumentError(f"input '{name}' is a function", named_function(value), rule, remedy)
         else:
             plan.formulas[i] = value
     _complete_motions(model, given, plan)
@@ -248,9 +240,7 @@ def _by_name(model: Model, given: Mapping[str, Any], constant: Array) -> InputPl
 def _refuse_infinite(name: str, value: float) -> None:
     if not np.isfinite(value):
         raise ShapeError(
-            Problem(
-                f"input '{name}' is not a finite number", str(value), "constant inputs are finite", "mend its value"
-            )
+            f"input '{name}' is not a finite number", str(value), "constant inputs are finite", "mend its value"
         )
 
 
@@ -269,12 +259,10 @@ def _complete_motions(model: Model, given: Mapping[str, Any], plan: InputPlan) -
             continue
         if isinstance(value, Signal):
             raise UnknownNameError(
-                Problem(
-                    f"model '{model.record.name}': input '{name}' prescribes a motion without its speeds",
-                    "a Signal",
-                    f"samples of '{name}' say nothing of 'd{name}' between them",
-                    f"give 'd{name}' as well, or a formula",
-                )
+                f"model '{model.record.name}': input '{name}' prescribes a motion without its speeds",
+                "a Signal",
+                f"samples of '{name}' say nothing of 'd{name}' between them",
+                f"give 'd{name}' as well, or a formula",
             )
         plan.formulas[names.index(f"d{name}")] = Rate(value, 1)
         if f"dd{name}" in driven and f"dd{name}" not in given:

@@ -11,7 +11,7 @@ import numpy as np
 from numpy.typing import ArrayLike
 
 from symofros.base.arguments import CheckedCalls, check_fields
-from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean, near_name
+from symofros.errors import SymofrosError, UnknownNameError, did_you_mean, near_name
 from symofros.runtime.beams import BEAM_LIMIT
 
 Stabilisation = Literal["projection", "baumgarte", "none"]
@@ -103,7 +103,7 @@ class SimulationOptions(metaclass=CheckedCalls):
             if name not in names:
                 rule = f"options are the fields of SimulationOptions, beside the arguments {', '.join(arguments)}"
                 remedy = _meant(name, names, arguments)
-                raise UnknownNameError(Problem(f"simulation: no option '{name}'", name, rule, remedy))
+                raise UnknownNameError(f"simulation: no option '{name}'", name, rule, remedy)
         return replace(self, **chosen)
 
     def refuse(self, names: Sequence[str], what: str, rule: str, remedy: str = "leave it out") -> None:
@@ -122,7 +122,7 @@ class SimulationOptions(metaclass=CheckedCalls):
         for name in names:
             value = getattr(self, name)
             if value is not None and (np.ndim(value) or value != getattr(usual, name)):
-                raise SymofrosError(Problem(f"{what}, '{name}'", repr(value)[:60], rule, remedy))
+                raise SymofrosError(f"{what}, '{name}'", repr(value)[:60], rule, remedy)
 
 
 def _meant(name: str, names: Sequence[str], arguments: Sequence[str]) -> str:

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import Array, numeric, real_array
-from symofros.errors import AssemblyError, Problem, ShapeError, SymofrosError, UnknownNameError
+from symofros.errors import AssemblyError, ShapeError, SymofrosError, UnknownNameError
 from symofros.native import native_number
 from symofros.runtime.manifold import UNIT_TOLERANCE as UNIT_TOLERANCE
 from symofros.runtime.manifold import at_unit_length
@@ -48,12 +48,10 @@ def vector(model: Model, name: str, values: ArrayLike, size: int) -> Array:
         elif hasattr(values, part := name.rstrip("0")):  # A result that holds one, such as of `assemble`.
             fault, remedy = f"an object of type {type(values).__name__}", f"pass its vector, .{part}"
         raise ShapeError(
-            Problem(
-                f"model '{model.record.name}': {name} does not fit",
-                fault,
-                f"{name} is a finite array of shape ({size},)",
-                remedy,
-            )
+            f"model '{model.record.name}': {name} does not fit",
+            fault,
+            f"{name} is a finite array of shape ({size},)",
+            remedy,
         )
     return array
 
@@ -70,7 +68,7 @@ def first_configuration(model: Model, q0: ArrayLike | None) -> Array:
 
 
 def _wrong(what: str, found: object, rule: str, remedy: str) -> SymofrosError:
-    return SymofrosError(Problem(f"simulation: {what}", str(found), rule, remedy))
+    return SymofrosError(f"simulation: {what}", str(found), rule, remedy)
 
 
 @dataclass(frozen=True)
@@ -199,7 +197,7 @@ def _check(options: SimulationOptions, t_end: float) -> None:
     o = options
     if o.method not in METHODS:
         rule, remedy = "a method has one of these names", method_meant(o.method)
-        raise UnknownNameError(Problem(f"simulation: no method '{o.method}'", ", ".join(METHODS), rule, remedy))
+        raise UnknownNameError(f"simulation: no method '{o.method}'", ", ".join(METHODS), rule, remedy)
     if not (math.isfinite(o.t0) and math.isfinite(t_end) and t_end >= o.t0):
         raise _wrong("no span of time", f"t0 = {o.t0}, t_end = {t_end}", "t_end is not before t0", "set t_end")
     if o.dt is not None and not (math.isfinite(o.dt) and o.dt > 0):
@@ -301,12 +299,10 @@ def check_start(model: Model, settings: Settings, q: Array, v: Array, u: Array, 
         condition = model.names.constraints[worst]
         if not abs(values[worst]) <= CLOSED:
             raise AssemblyError(
-                Problem(
-                    f"model '{model.record.name}': the first state does not keep '{condition}'",
-                    f"{what} = {values[worst]:.3g}",
-                    f"|{what}| <= {CLOSED:g} at the start",
-                    "start from sf.assemble(model, q0, v0), or pull it in by stabilisation='baumgarte'",
-                )
+                f"model '{model.record.name}': the first state does not keep '{condition}'",
+                f"{what} = {values[worst]:.3g}",
+                f"|{what}| <= {CLOSED:g} at the start",
+                "start from sf.assemble(model, q0, v0), or pull it in by stabilisation='baumgarte'",
             )
 
 
@@ -328,12 +324,10 @@ def _grid(output: float | npt.ArrayLike | None, t0: float, t_end: float) -> Arra
         return np.asarray(found, dtype=np.float64)
     if times.ndim != 1 or times.size == 0 or not (np.all(np.diff(times) > 0) and t0 <= times[0] <= times[-1] <= t_end):
         raise ShapeError(
-            Problem(
-                "simulation: output times do not fit",
-                f"shape {times.shape}" if np.isfinite(times).all() else "times that are not finite",
-                f"times (n) increase from {t0} to {t_end} at most",
-                "sort them",
-            )
+            "simulation: output times do not fit",
+            f"shape {times.shape}" if np.isfinite(times).all() else "times that are not finite",
+            f"times (n) increase from {t0} to {t_end} at most",
+            "sort them",
         )
     return times
 
@@ -347,11 +341,9 @@ def _gains(model: Model, stabilisation: str, gains: npt.ArrayLike | None, step: 
     given = np.repeat(given, model.nc) if given.shape == (2,) else given
     if given.shape != (2 * model.nc,) or not np.all(given >= 0):
         raise ShapeError(
-            Problem(
-                "simulation: gains do not fit",
-                str(given.shape),
-                f"(alpha, beta), or ({2 * model.nc},): alphas, then betas, none negative",
-                "give two numbers",
-            )
+            "simulation: gains do not fit",
+            str(given.shape),
+            f"(alpha, beta), or ({2 * model.nc},): alphas, then betas, none negative",
+            "give two numbers",
         )
     return given

@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, real_array
-from symofros.errors import Problem, ShapeError, SymofrosError
+from symofros.errors import ShapeError, SymofrosError
 from symofros.runtime.calls import flat
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
@@ -95,9 +95,7 @@ def simulate_batch(
     _check_batch(settings)
     count = model.threads if threads is None else threads
     if count < 1:
-        raise SymofrosError(
-            Problem("simulate_batch: no thread to work", f"threads = {threads}", "threads >= 1", "leave it out")
-        )
+        raise SymofrosError("simulate_batch: no thread to work", f"threads = {threads}", "threads >= 1", "leave it out")
     stated, model = model, model.carried
     q0, v0 = stated.carry(q0, v0, z0)
     given = sort_inputs(model, u)
@@ -148,19 +146,17 @@ def _check_batch(settings: Settings) -> None:
     if not settings.method.family.batched:
         explicit = ", ".join(name for name, method in METHODS.items() if method.family.batched)
         what, rule = f"simulate_batch: '{name}' is no explicit method", f"batches take {explicit}"
-        raise SymofrosError(Problem(what, name, rule, "run sf.simulate for each state"))
+        raise SymofrosError(what, name, rule, "run sf.simulate for each state")
 
 
 def _rows(model: Model, name: str, values: ArrayLike, size: int) -> Array:
     array = real_array(model.by_name(name, values))
     if array is None or array.ndim == 0 or array.shape[-1] != size:
         raise ShapeError(
-            Problem(
-                f"model '{model.record.name}': {name} has the wrong shape",
-                f"{type(values).__name__} {values!r:.60}" if array is None else str(array.shape),
-                f"{name} has shape (..., {size}), of real numbers",
-                "one row a trajectory, or one for all",
-            )
+            f"model '{model.record.name}': {name} has the wrong shape",
+            f"{type(values).__name__} {values!r:.60}" if array is None else str(array.shape),
+            f"{name} has shape (..., {size}), of real numbers",
+            "one row a trajectory, or one for all",
         )
     return array
 
@@ -171,12 +167,10 @@ def _batch_shape(rows: dict[str, Array], inputs: list[Shape]) -> Shape:
     except ValueError:
         shapes = [f"{name} {array.shape}" for name, array in rows.items()] + [f"inputs {shape}" for shape in inputs]
         raise ShapeError(
-            Problem(
-                "simulate_batch: batch dimensions do not broadcast",
-                ", ".join(shapes),
-                "all but the last dimension of each array broadcast together",
-                "give each array the same leading dimensions, or none",
-            )
+            "simulate_batch: batch dimensions do not broadcast",
+            ", ".join(shapes),
+            "all but the last dimension of each array broadcast together",
+            "give each array the same leading dimensions, or none",
         ) from None
 
 

@@ -8,7 +8,7 @@ from threading import Lock
 from typing import Any, NoReturn
 
 from symofros.base.arrays import Array
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.simulation.options import SimulationOptions
 
 # Times of steps are known to the step up to here.
@@ -37,7 +37,7 @@ class Stepped:
         """Refuse to replace what only looks like the state or the settings."""
         if name in _CHANGED_BY and (name in vars(self) or hasattr(type(self), name)):
             what, rule = f"{type(self).__name__}: {name} is not assigned", "attributes tell what C steps with"
-            raise refusal(what, repr(value)[:60], rule, _CHANGED_BY[name])
+            raise SymofrosError(what, repr(value)[:60], rule, _CHANGED_BY[name])
         super().__setattr__(name, value)
 
     def _begin_alone(self) -> None:
@@ -47,7 +47,7 @@ class Stepped:
 
     def _occupied(self) -> SymofrosError:
         what, found = f"{type(self).__name__}: step", "another thread is within a step of the same one"
-        return refusal(
+        return SymofrosError(
             what, found, "one thread at a time makes steps", "one for each thread, or a lock around the calls"
         )
 
@@ -67,7 +67,7 @@ class Stepped:
         """Refuse to pickle memory of C."""
         rule = "a stepper is compiled code and memory of one process"
         remedy = "send t, q, v and par as arrays; there sf.compile, make one and reset it at them"
-        raise refusal(f"{type(self).__name__}: not pickled", repr(self), rule, remedy)
+        raise SymofrosError(f"{type(self).__name__}: not pickled", repr(self), rule, remedy)
 
 
 class SteppedModel(Stepped):
@@ -112,13 +112,13 @@ def check_owner(state: Any, kind: type, owner: str, refused: tuple[str, str, str
         return
     what, rule, remedy = refused
     found = f"a state of {state.owner}" if known else repr(state)[:60]
-    raise refusal(what, found, rule, remedy)
+    raise SymofrosError(what, found, rule, remedy)
 
 
 def no_steps(steps: object) -> SymofrosError:
     """The refusal of what is no number of steps."""
     rule, remedy = "steps is a whole number from 1 on", "leave it out for one step"
-    return refusal("step: no number of steps", repr(steps)[:60], rule, remedy)
+    return SymofrosError("step: no number of steps", repr(steps)[:60], rule, remedy)
 
 
 def options_by_hand(
@@ -138,10 +138,5 @@ def options_by_hand(
     for name in changes:
         if name in _ELSEWHERE:
             rule, remedy = _ELSEWHERE[name]
-            raise refusal(f"stepper: no option '{name}'", name, rule, remedy)
+            raise SymofrosError(f"stepper: no option '{name}'", name, rule, remedy)
     return (options or SimulationOptions()).changed(changes, arguments)
-
-
-def refusal(what: str, found: str, rule: str, remedy: str) -> SymofrosError:
-    """What is not done, in four parts."""
-    return SymofrosError(Problem(what, found, rule, remedy))

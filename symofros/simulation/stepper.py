@@ -14,7 +14,7 @@ import numpy.typing as npt
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, real_array
-from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError
+from symofros.errors import ShapeError, SymofrosError, UnknownNameError
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.events import events_of
 from symofros.simulation.inputs import plan_inputs
@@ -32,7 +32,6 @@ from symofros.simulation.stepped import (
     no_steps,
     options_by_hand,
     owner_of,
-    refusal,
 )
 from symofros.simulation.stepping.by_hand import MOST_NOTED, HandRun, HandState
 from symofros.simulation.stepping.fast_step import fast_step
@@ -181,7 +180,7 @@ class Stepper(SteppedModel):
                 raise
         elif hand.status != Status.RUNNING:
             rule = "steps are made while step() returns True"
-            raise refusal("step: the motion has ended", str(self.outcome), rule, "reset() or restore() first")
+            raise SymofrosError("step: the motion has ended", str(self.outcome), rule, "reset() or restore() first")
         return hand.step(values, steps) == Status.RUNNING
 
     def _made(self, status: int | None) -> bool:
@@ -315,7 +314,7 @@ def checked_inputs(model: Model, names: Sequence[str], u: ArrayLike, n: int = 0)
     if isinstance(u, Mapping) and len(names) < model.nu:
         for name in u.keys() - set(names):
             what, rule = f"step: no input '{name}' by hand", f"inputs by hand are {', '.join(names) or 'none'}"
-            raise UnknownNameError(Problem(what, str(name), rule, "laws and numbers of the stepper stay as they are"))
+            raise UnknownNameError(what, str(name), rule, "laws and numbers of the stepper stay as they are")
         u = np.array([u.get(name, 0.0) for name in names])
     array, shape = real_array(model.by_name("u", u)), (len(names),)
     fits = array is not None and array.shape in ((shape, (n, *shape)) if n else (shape,))
@@ -333,7 +332,7 @@ def checked_inputs(model: Model, names: Sequence[str], u: ArrayLike, n: int = 0)
     listed = ", ".join(names[:8]) or ("all inputs are laws and numbers" if model.nu else "there are no inputs")
     listed += ", …" if len(names) > 8 else ""
     rule = f"u is finite, of shape {shape}{f' or {(n, *shape)}' if n else ''}: {listed}"
-    raise ShapeError(Problem(f"model '{model.record.name}': u does not fit", found, rule, remedy))
+    raise ShapeError(f"model '{model.record.name}': u does not fit", found, rule, remedy)
 
 
 def settings_by_hand(model: Model, options: SimulationOptions) -> Settings:
@@ -342,7 +341,7 @@ def settings_by_hand(model: Model, options: SimulationOptions) -> Settings:
     options.refuse(("output", "every", "max_steps", "realtime"), "stepper: an option of whole runs", rule)
     settings = Settings.of(model, options, options.t0)
     if settings.method.family.multistep:
-        raise refusal(
+        raise SymofrosError(
             f"stepper: '{options.method}' has no steps to be made by hand",
             "a method of SUNDIALS, with a history of steps",
             "inputs that change at each step would cut its history",

@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, real_array
-from symofros.errors import Problem, ShapeError
+from symofros.errors import ShapeError, SymofrosError
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.events import events_of
@@ -32,7 +32,6 @@ from symofros.simulation.stepped import (
     no_steps,
     options_by_hand,
     owner_of,
-    refusal,
 )
 from symofros.simulation.stepper import Stepper, checked_inputs, fixed_inputs, read_only, settings_by_hand
 from symofros.simulation.stepping.batch_by_hand import BatchState, Followed, HandBatch, Held
@@ -100,13 +99,13 @@ class Steppers(SteppedModel):
         if not settings.method.family.batched or settings.adaptive:
             explicit = ", ".join(name for name, method in METHODS.items() if method.family.batched)
             what, rule = f"steppers: '{chosen.method}' has no fixed explicit steps", f"batches step by {explicit}"
-            raise refusal(what, chosen.method, rule, "adaptive=False, or an sf.Stepper for each motion")
+            raise SymofrosError(what, chosen.method, rule, "adaptive=False, or an sf.Stepper for each motion")
         n, threads = int(n), int(model.threads if threads is None else threads)
         self._given: dict[str, Any] = {"u": u, "events": events, "threads": threads, "options": chosen}
         for name, number in (("n", n), ("threads", threads)):
             if not 1 <= number < _MOST:
                 what, rule = f"steppers: {name} is no number of them", f"1 <= {name} < {_MOST}"
-                raise refusal(what, str(number), rule, "give a whole number of that range")
+                raise SymofrosError(what, str(number), rule, "give a whole number of that range")
         self._stepping = Lock()
         stated, model = model, model.carried
         self.model, self.n, self.dt = stated, n, settings.dt
@@ -171,7 +170,9 @@ class Steppers(SteppedModel):
         if par is not None:
             if self.par.ndim == 1:
                 rule = "steppers have one set of parameters for all, or one each"
-                raise refusal("reset: parameters", "one set for all", rule, "make them with par of shape (n, npar)")
+                raise SymofrosError(
+                    "reset: parameters", "one set for all", rule, "make them with par of shape (n, npar)"
+                )
             values = np.asarray(model.checked_parameters(self._rows("par", par, model.npar)[chosen]))
             self._begun_with[chosen] = values
         elif self._hand.single.actions is not None:
@@ -267,7 +268,7 @@ class Steppers(SteppedModel):
         which examines it, once for each state. The outcome of another one says what was found of these.
         """
         if not 0 <= i < self.n:
-            raise refusal(
+            raise SymofrosError(
                 "outcome: no such motion", str(i), f"0 <= i < {self.n}", "steppers.running tells which can go on"
             )
         results = self._hand.results
@@ -364,7 +365,7 @@ class Steppers(SteppedModel):
         mask = np.asarray(which)
         if mask.dtype != bool or mask.shape != (self.n,):
             found = f"{mask.dtype} of shape {mask.shape}"
-            raise refusal("reset: which does not fit", found, f"one bool for each of {self.n}", _MASK)
+            raise SymofrosError("reset: which does not fit", found, f"one bool for each of {self.n}", _MASK)
         return np.flatnonzero(mask)
 
     def _misfit(self, name: str, found: Any, size: int, remedy: str) -> ShapeError:
@@ -374,7 +375,7 @@ class Steppers(SteppedModel):
             fits = found.shape in ((size,), (self.n, size))
             fault = "a number that is not finite" if fits else str(found.shape)
         rule = f"{name} is finite, of shape ({size},) or ({self.n}, {size})"
-        return ShapeError(Problem(what, fault, rule, remedy))
+        return ShapeError(what, fault, rule, remedy)
 
 
 # How a mask is made.

@@ -9,7 +9,7 @@ from pathlib import Path
 from types import CodeType
 from typing import Any
 
-from symofros.errors import ArgumentError, Problem
+from symofros.errors import ArgumentError
 
 _PACKAGE = str(Path(__file__).parents[1])
 
@@ -47,9 +47,7 @@ def check_called_with(what: str, function: Callable[..., Any], *arguments: str) 
         called = ", ".join(arguments)
         found = f"{named_function(function)} takes {signature}: {error}"
         remedy = f"lambda {called}: ..., whether it needs all of them or not"
-        raise ArgumentError(
-            Problem(f"{what} takes other arguments", found, f"it is called with ({called})", remedy)
-        ) from None
+        raise ArgumentError(f"{what} takes other arguments", found, f"it is called with ({called})", remedy) from None
 
 
 def raised_where(error: BaseException) -> str:

@@ -45,7 +45,7 @@ def test_a_mechanism_tells_functions_of_its_motion() -> None:
     """Those of the model along the run, at the parameters that an event has set by then."""
     gripper = CASES["grasp"]
     functions = ("kinetic_energy", "closure_wrenches", "joint_wrenches", "centroidal_momentum")
-    run = sf.Simulation(diagram(gripper, tells=functions)).run(gripper.t_end, dt=1e-2)
+    run = sf.Simulation(diagram(gripper, functions=functions)).run(gripper.t_end, dt=1e-2)
     alone = simulated(gripper, dt=1e-2)
     model, after = alone.model, alone.par_over_time[-1]
     (q, v), a, lam, t = run.motion("plant"), run["plant.a"], run["plant.lam"], run.t
@@ -67,4 +67,4 @@ def test_a_mechanism_tells_functions_of_its_motion() -> None:
 
 def test_outputs_that_a_mechanism_does_not_have_are_refused() -> None:
     with pytest.raises(sf.DescriptionError, match="'contact_forces' has no entries"):
-        sf.Simulation(diagram(CASES["grasp"], tells=("contact_forces",)))
+        sf.Simulation(diagram(CASES["grasp"], functions=("contact_forces",)))

@@ -11,12 +11,7 @@ _SOLID = "{mass: 1, moments: [1, 1, 1]}"
 
 
 def system_of_bodies(lines: str, folder: Path) -> sf.System:
-    """The system whose bodies are these lines, with the inertia of a solid where there is a joint and none is stated.
-
-    Args:
-        lines: Entries of `bodies`, one a line.
-        folder: Where the file is written.
-    """
+    """The system with these lines as bodies; those on joints that state no inertia get that of a solid."""
     bodies = [
         line[:-1] + f", inertia: {_SOLID}}}" if "joint:" in line and "beam:" not in line else line
         for line in lines.splitlines()

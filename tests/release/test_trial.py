@@ -33,6 +33,8 @@ pytestmark = pytest.mark.slow(minutes=5)
 INSTALLED = {"symofros": "symofros"} | {name: f"symofros/{name}" for name in ("validation", "reference_models")}
 # The page's sources; what is built from them is in editor/static.
 NOT_INSTALLED = "symofros/studio/editor/page/"
+# Pages that windows of the editor show.
+DOCS = ("docs/*.md", "docs/howto/*.md", "docs/theory/*.md")
 TUTORIAL = ("first_arm", "beam", "loop", "controller", "export", "your_urdf")
 # What the base installation promises; more has to be an extra.
 MEGABYTES = 260
@@ -103,7 +105,8 @@ def tracked() -> set[str]:
 def test_the_wheel_holds_all_data_and_no_sources_of_pages_nor_tests(wheel: Path) -> None:
     names = {name for name in zipfile.ZipFile(wheel).namelist() if ".dist-info/" not in name}
     sources = (name.partition("/") for name in tracked() if not name.startswith(NOT_INSTALLED))
-    assert names == {f"{INSTALLED[top]}/{rest}" for top, _, rest in sources}
+    pages = {f"symofros/{name.relative_to(ROOT)}" for part in DOCS for name in ROOT.glob(part)}
+    assert names == {f"{INSTALLED[top]}/{rest}" for top, _, rest in sources} | pages
     assert wheel.name == f"symofros-{sf.__version__}-py3-none-any.whl"
 
 

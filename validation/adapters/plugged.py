@@ -28,10 +28,6 @@ def build(name: str, subject: Subject) -> ChartedEngine | Unsupported:
 
     Each joint is stated whole, and all that is fixed to a link is one mass with it. Where the engine refuses links
     without mass for the subject's frames, it is asked without them.
-
-    Args:
-        name: Name of the plug-in.
-        subject: The subject.
     """
     plugin = registry().plugins.get(name)
     if plugin is None:

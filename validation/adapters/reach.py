@@ -12,13 +12,7 @@ from ..mechanics.joint_kinds import PartKind
 
 
 def unrepresented(system: sf.System, assembly: Assembly, joints: Collection[PartKind]) -> Unsupported | None:
-    """The first thing of a description that an engine can't be built for.
-
-    Args:
-        system: The description.
-        assembly: The same as numbers.
-        joints: Kinds of simple joints that the engine has.
-    """
+    """The first thing of a description that an engine can't be built for."""
     for mover in assembly.movers:
         if mover.kind not in joints:
             return Unsupported(

@@ -39,12 +39,7 @@ def has_rotors(system: sf.System) -> bool:
 
 
 def build(factory: EngineFactory, subject: Subject) -> Engine | Unsupported:
-    """An engine's model of a description with rotors.
-
-    Args:
-        factory: Factory of an engine for trees.
-        subject: Subject with rotors.
-    """
+    """An engine's model of a description with rotors."""
     plain = without_rotors(subject.system)
     bodies, spins = _rotor_bodies(subject.system)
     explicit = replace(subject, system=plain.with_bodies(*bodies), frames=())

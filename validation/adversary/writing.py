@@ -40,11 +40,6 @@ def name_of(find: Find) -> str:
 def write_find(find: Find, attack: Attack, folder: Path) -> tuple[Path, Path | None]:
     """Write test_NAME.py and NAME.yaml.
 
-    Args:
-        find: Find.
-        attack: Attack that found it.
-        folder: Folder of the files.
-
     Returns:
         The test; the description, None where the mechanism can't be written.
     """

@@ -202,12 +202,6 @@ def sources() -> dict[str, str]:
 def execute(task: Task, folder: Path, hash: str, code: Mapping[str, str]) -> bytes:
     """Do a batch on a worker, unless its part is there already.
 
-    Args:
-        task: Batch to do.
-        folder: Folder of the campaign.
-        hash: Hash of the plan.
-        code: Digests of the client's code.
-
     Returns:
         The part.
 

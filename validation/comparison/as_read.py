@@ -54,14 +54,14 @@ def as_read(file: Path, engine: str, floating_base: bool = False) -> sf.Mechanis
     if engine not in READERS or file.suffix.lower() not in READERS[engine]:
         rule = "; ".join(f"{name} reads {', '.join(suffixes)}" for name, suffixes in READERS.items())
         what = f"no reader of {file.suffix or file.name} as '{engine}'"
-        raise sf.SymofrosError(sf.Problem(what, engine, rule, "name one of these engines"))
+        raise sf.SymofrosError(what, engine, rule, "name one of these engines")
     ours = _ours(file, floating_base, engine == "mujoco" and file.suffix.lower() == ".urdf")
     module = import_module(f"{adapters.__name__}.{engine}.as_read")
     try:
         theirs: sf.System = module.description(file, floating_base)
     except (ValueError, RuntimeError) as error:
         rule, remedy = "what an engine refuses can't be compared", "compare it as another engine"
-        raise sf.SymofrosError(sf.Problem(f"{file.name}: {engine} refuses it", str(error), rule, remedy)) from None
+        raise sf.SymofrosError(f"{file.name}: {engine} refuses it", str(error), rule, remedy) from None
     return sf.diff(ours, theirs, tolerance=TOLERANCES[engine])
 
 

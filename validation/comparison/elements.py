@@ -74,13 +74,7 @@ class BeamElements(Protocol):
 
 
 def judge_elements(one: Participant, assembly: Assembly, variants: ModelVariants) -> Iterator[Comparison]:
-    """The rows on rates and orders of an engine that is made of finite elements; none of another.
-
-    Args:
-        one: The engine.
-        assembly: The model as numbers.
-        variants: Our models of it.
-    """
+    """The rows on rates and orders of an engine that is made of finite elements; none of another."""
     label, system = variants.subject.label, variants.subject.system
     engine: Any = one.engine
     beams: Sequence[BeamElements] = [beam for beam in getattr(engine, "elements", ()) if beam.described.modes]
@@ -107,12 +101,7 @@ def judge_elements(one: Participant, assembly: Assembly, variants: ModelVariants
 
 
 def clamped(system: sf.System, name: str) -> sf.Model:
-    """Our model of a beam by itself, held at its root, with every term of its strain energy and nothing else.
-
-    Args:
-        system: Description that has the beam.
-        name: Name of the beam.
-    """
+    """Our model of a beam by itself, held at its root, with every term of its strain energy and nothing else."""
     beam = system.body(name)
     assert isinstance(beam, sf.Beam)
     held = sf.Joint("clamp", "fixed")
@@ -124,13 +113,7 @@ def clamped(system: sf.System, name: str) -> sf.Model:
 
 
 def judge_rates(label: str, engine: str, refined: Sequence[Refined]) -> Comparison:
-    """Whether meshes converge at the rates that they are extrapolated by.
-
-    Args:
-        label: Label of the model.
-        engine: Name of the engine.
-        refined: Quantities on meshes.
-    """
+    """Whether meshes converge at the rates that they are extrapolated by."""
     rates = {one.name: (rate, one) for one in refined if (rate := one.rate()) is not None}
     if not rates:
         return Comparison(label, engine, RATE, "unsupported", note="every mesh has the limit to rounding")

@@ -74,14 +74,7 @@ class Participant:
 def participants(
     assembly: Assembly, variants: ModelVariants, names: Sequence[str], factories: Factories
 ) -> Iterator[Participant | Comparison]:
-    """Every engine that can represent a subject; a row of the table for each that can't, or whose adapter raises.
-
-    Args:
-        assembly: The subject as numbers.
-        variants: Our models of it.
-        names: The engines asked for.
-        factories: Factories that take the place of the adapters' own, by engine.
-    """
+    """Every engine that can represent a subject; a row of the table for each that can't, or whose adapter raises."""
     subject = variants.subject
     for name in names:
         route = route_of(name)

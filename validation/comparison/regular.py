@@ -74,12 +74,7 @@ def _selected(states: States, which: np.ndarray) -> States:
 
 
 def judge_omissions(label: str, regular: RegularStates) -> Comparison | None:
-    """A failure if too many states, or all, were left out.
-
-    Args:
-        label: Label of the model.
-        regular: The sorted states.
-    """
+    """A failure if too many states, or all, were left out."""
     expected = MAX_OMITTED * regular.drawn
     most = expected + DEVIATIONS * math.sqrt(expected)
     if regular.omitted <= most and len(regular.states):

@@ -83,13 +83,7 @@ def judge_order(
 
 
 def scaled(assembly: Assembly, states: States, eps: float) -> States:
-    """The states with elastic coordinates and speeds times a factor.
-
-    Args:
-        assembly: The model as numbers.
-        states: The states.
-        eps: The factor.
-    """
+    """The states with elastic coordinates and speeds times a factor."""
     q, v = states.q.copy(), states.v.copy()
     for mover in assembly.movers:
         if mover.kind == "elastic":

@@ -85,13 +85,7 @@ class Rescaled:
         )
 
     def of(self, item: Any, name: str, shifts: list[bool] | None = None) -> Any:
-        """A part of the description.
-
-        Args:
-            item: Part.
-            name: Name of the entry that it is.
-            shifts: Which coordinates of its joint are lengths.
-        """
+        """A part of the description."""
         if isinstance(item, tuple):
             return tuple(self.of(one, name, shifts) for one in item)
         if isinstance(item, sf.Joint):

@@ -20,12 +20,7 @@ class LatestResults(Generic[T]):
         self._results: dict[tuple[bytes, ...], T] = {}
 
     def get(self, arguments: tuple[Array, ...], compute: Callable[[], T]) -> T:
-        """The result at some arguments, computed if it is not kept.
-
-        Args:
-            arguments: Everything that the result depends on.
-            compute: Function that computes it.
-        """
+        """The result at some arguments, computed if it is not kept."""
         key = tuple(x.tobytes() for x in arguments)
         if key not in self._results:
             if len(self._results) == KEPT:

@@ -110,10 +110,6 @@ class Baseline:
     def judge(self, record: Record, machine: tuple[str, ...]) -> tuple[list[Regression], list[str]]:
         """The regressions of a run, and notes on what was not compared or not decided.
 
-        Args:
-            record: Record of the run.
-            machine: The run's machine.
-
         Raises:
             BaselineError: The runs were asked different things.
         """

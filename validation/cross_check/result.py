@@ -65,14 +65,12 @@ def check_model(
 ) -> CheckResult:
     """The check of one model; arguments are those of `check` of this package."""
     if states < 1:
-        raise sf.ArgumentError(
-            sf.Problem("check: states", str(states), "at least one state is compared", "states=1 or more")
-        )
+        raise sf.ArgumentError("check: states", str(states), "at least one state is compared", "states=1 or more")
     try:
         require_engines(engines or ())
     except LookupError as error:
         said, _, known = str(error.args[0]).partition("; there are ")
-        raise sf.UnknownNameError(sf.Problem(f"check: {said}", said, known, "name one of these")) from None
+        raise sf.UnknownNameError(f"check: {said}", said, known, "name one of these") from None
     settings = Settings(states, seed, None if engines is None else tuple(engines), full=full)
     return CheckResult(settings, check(_subject(model, floating_base), settings))
 
@@ -84,5 +82,5 @@ def _subject(model: sf.System | str | Path, floating_base: bool) -> Subject:
         (case,) = named([str(model)], ReadingOptions(floating_base))
     except LookupError as error:
         stated = f"check: no model '{model}'", str(error.args[0]), "a system, a file, or a model of the standard set"
-        raise sf.UnknownNameError(sf.Problem(*stated, "name an existing file")) from None
+        raise sf.UnknownNameError(*stated, "name an existing file") from None
     return case.load()

@@ -38,10 +38,6 @@ def missing() -> str:
 def rows(subject: Subject, worlds: tuple[int, ...] = WORLDS) -> Iterator[PeerRow]:
     """MuJoCo Warp's error and highest rate over numbers of worlds, for each function of a model.
 
-    Args:
-        subject: Model and states.
-        worlds: Numbers of states in a call.
-
     Raises:
         ValueError: MuJoCo can't hold the model.
     """

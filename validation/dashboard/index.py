@@ -14,6 +14,7 @@ from ..reporting import html, markdown
 from ..reporting.evidence import revision, standing_text
 from ..reporting.figures import Figure
 from ..reporting.record import MISSED, SHORT, Block, Bullets, Report, Section, Table, Text
+from .asked import asked_first
 from .gather import Entry
 from .trust import TITLE, trust
 
@@ -79,6 +80,7 @@ def index(entries: Mapping[str, Entry]) -> Report:
         not verdicts & {"wrong", "missed"},
         (
             _LEAD,
+            asked_first(entries),
             summary_table(entries, linked=True),
             *(Text(f"Of the reports, {aged}.", "soft") for aged in [", ".join(_aged(entries))] if aged),
             *_decisions(entries),

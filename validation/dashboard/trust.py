@@ -116,7 +116,7 @@ def trust(entries: Mapping[str, Entry]) -> Report:
         ("**Who agrees, to how many digits?**", _agreed(checked), "check"),
         ("**How fast is it?**", _fast(raced), "timing"),
         ("**Where does it fail?**", _fails(entries), "stability"),
-        ("**What is not covered?**", _uncovered(checked), "check"),
+        ("**What is not covered?**", uncovered(entries), "check"),
     )
     rows = tuple((asked, said, f"[{name}]({name}.html)") for asked, said, name in answers if said)
     found = [*_models(checked, features, raced), *_trees(cells)]
@@ -216,15 +216,21 @@ _ABOUT = {
 }
 
 
-def _uncovered(checked: Checked | None) -> str:
-    if checked is None:
+_SCOPE = """Not meant for collision of meshes or of many bodies, for plates, shells and solids that deform, for flexible
+bodies from finite elements (`docs/comparison.md` names what is)."""
+
+
+def uncovered(entries: Mapping[str, Entry]) -> str:
+    """What is out of scope, and what the cross-check leaves open, in short."""
+    if "check" not in entries or not entries["check"].report:
         return ""
+    checked = Checked.of(entries["check"].data)
     alone, own = _unjudged(checked), _own_quantities(checked)
-    said = f"{counted(len(own), 'question')} that no independent engine answers, but other routes of our own"
+    said = f"{_SCOPE} {counted(len(own), 'quantity')} only our own routes and formulas judge"
     models = f"no engine judges {', '.join(alone)}" if alone else "each model is judged by an engine"
     refused = len({(row.model, row.engine) for row in checked.rows("unsupported") if is_independent(row.engine)})
     pairs = f"in {counted(refused, 'pair')} of model and engine the engine can't say everything"
-    return f"{said}; {models}; {pairs} ([in full](#gaps))."
+    return f"{said}; {models}; {pairs} ([in full](trust.html#gaps))."
 
 
 def _unjudged(checked: Checked) -> list[str]:

@@ -170,6 +170,9 @@ class Tree:
         away: Added to the positions that random states have of free joints [m].
         near: Random states are near to where nothing has moved: coordinates' distances from there, speeds and forces
             are 2^-near of what they would be; rates of speeds are not.
+        beside: What random rotations are near to in place of that, 2^-near from it, or exactly for near = 0: "half
+            turns", "half turns about an axis", "each other", "each other's opposite" quaternion; "one axis" turns all
+            by less than a quarter turn about one of the coordinates' axes.
         asked: What else an engine must know by name to be asked about it, such as "turns" or "flexible bodies"; only
             functions that need it are asked of such a tree.
         stated: In which way of its own the engine states it, where that is not link by link: "a base",
@@ -190,6 +193,7 @@ class Tree:
     medium: Medium | None = None
     away: Vector = ORIGIN
     near: int = 0
+    beside: str = ""
     asked: str = ""
     stated: str = ""
     features: tuple[str, ...] = ()

@@ -36,15 +36,7 @@ class _Call:
 
 
 def _called(who: str, calls: Callable[[str], _Call], subject: Subject, function: str, states: int) -> Side:
-    """A side that calls a function of CasADi on arrays in place, without conversions.
-
-    Args:
-        who: Name of the side.
-        calls: The function of CasADi by our name of it.
-        subject: Model and states.
-        function: Name of the function.
-        states: States in a call.
-    """
+    """A side that calls a function of CasADi on arrays in place, without conversions."""
     called = calls(function)
     own = called.function
     buffer, trigger = own.map(states).buffer() if states > 1 else own.buffer()

@@ -118,11 +118,7 @@ def published(package: str) -> list[str]:
 
 
 def day_of(requirement: str) -> str:
-    """The day after a release was published, by the lock file that uv writes; "" where it is unknown.
-
-    Args:
-        requirement: The release, as NAME==VERSION.
-    """
+    """The day after a release was published, by the lock file that uv writes; "" where it is unknown."""
     uv = shutil.which("uv")
     if not uv:
         return ""
@@ -134,10 +130,6 @@ def day_of(requirement: str) -> str:
 
 def printed(python: Path, script: str) -> float:
     """The number that a script prints last.
-
-    Args:
-        python: Python of the environment.
-        script: The script.
 
     Raises:
         NotAskedError: It ended without a number, with its last words.

@@ -97,13 +97,7 @@ def slots(assembly: Assembly) -> list[tuple[slice, slice]]:
 
 
 def bodies(assembly: Assembly, beams: Mapping[str, ElasticBeam | StrainRod], states: AllSpeeds) -> list[Carried]:
-    """The frame of every mover (K = 1); that of elastic coordinates is the beam's tip.
-
-    Args:
-        assembly: The tree.
-        beams: Its beams and rods by name.
-        states: The states.
-    """
+    """The frame of every mover (K = 1); that of elastic coordinates is the beam's tip."""
     frames: list[Carried] = []
     for mover, (own_q, own_v) in zip(assembly.movers, slots(assembly), strict=True):
         q, v = states.q[:, own_q], states.v[:, own_v]

@@ -162,12 +162,7 @@ def of_family(family: str, count: int, L: float, bending: bool) -> tuple[tuple[S
 
 
 def strain_family(name: str, count: int) -> tuple[list[Curve], tuple[float, ...]]:
-    """Strain functions of a rod over xi = x/L of any family but "user", and where they are not smooth.
-
-    Args:
-        name: Name of the family.
-        count: Number of functions.
-    """
+    """Strain functions of a rod over xi = x/L of any family but "user", and where they are not smooth."""
     if name == "legendre":
         return [np.polynomial.Legendre.basis(k, domain=[0, 1]) for k in range(count)], ()
     if name == "polynomial" or not count:

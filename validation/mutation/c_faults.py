@@ -42,12 +42,7 @@ class _Token:
 
 
 def c_faults(module: str, text: str) -> list[SourceFault]:
-    """Every fault that can be planted in a file of C.
-
-    Args:
-        module: Path of the file from the folder of the repository.
-        text: Its text.
-    """
+    """Every fault that can be planted in a file of C."""
     return list(dict.fromkeys(_Planter(module, text).faults()))
 
 

@@ -76,11 +76,7 @@ def subject(name: str) -> Subject:
 
 
 def judge(module: str) -> dict[str, Any]:
-    """Whether `check` sees the fault that is planted in this process's package.
-
-    Args:
-        module: Where the fault is.
-    """
+    """Whether `check` sees the fault that is planted in this process's package."""
     warnings.simplefilter("ignore")
     others = tuple(name for name in ROUTES if name != "interpreted")
 

@@ -45,12 +45,7 @@ class Fresh:
         self._begins: dict[str, list[int]] = {}
 
     def has(self, fault: SourceFault, text: str) -> bool:
-        """Whether a fault is planted in new code.
-
-        Args:
-            fault: Fault.
-            text: Text of its file.
-        """
+        """Whether a fault is planted in new code."""
         if fault.module not in self._begins:
             self._begins[fault.module] = self._new_tokens(text)
         begins = self._begins[fault.module]

@@ -59,12 +59,7 @@ _SPOKEN = re.compile(r".*(Error|Problem|Warning|Remark)|warn|named?|info|debug|j
 
 
 def python_faults(module: str, text: str) -> list[SourceFault]:
-    """Every fault that can be planted in a file of Python.
-
-    Args:
-        module: Path of the file from the folder of the repository.
-        text: Its text.
-    """
+    """Every fault that can be planted in a file of Python."""
     return list(dict.fromkeys(_Planter(module, text).faults()))
 
 

@@ -104,9 +104,7 @@ def argued_faults(file: Path = _ARGUED) -> dict[str, str]:
     if gone:
         rule = "an argued fault is one of a module that there is"
         raise sf.SymofrosError(
-            sf.Problem(
-                f"{file.name}: no such module", "; ".join(gone), rule, "name the present one, or remove the fault"
-            )
+            f"{file.name}: no such module", "; ".join(gone), rule, "name the present one, or remove the fault"
         )
     return argued
 

@@ -261,12 +261,7 @@ def _words(path: Path) -> frozenset[str]:
 
 
 def chosen(root: Path, module: str) -> list[str]:
-    """The tests of a module, the likeliest to see a fault first.
-
-    Args:
-        root: Folder of the repository.
-        module: Path of the module.
-    """
+    """The tests of a module, the likeliest to see a fault first."""
     path = Path(module)
     folder_of_tests = Path("tests", *path.parts[1:-1])
     mirror = (folder_of_tests if (root / folder_of_tests).is_dir() else folder_of_tests.parent).as_posix()

@@ -23,9 +23,6 @@ Placed = tuple[Any, Any]
 def derive(system: sf.System) -> Derived:
     """A model by Kane's equations.
 
-    Args:
-        system: System with any joints.
-
     Raises:
         NotDerivable: A prescribed motion has quaternions.
     """

@@ -36,10 +36,6 @@ def seconds_at(points: Iterable[Point], error: float) -> float:
     of logarithms; a series that is better throughout counts by its fastest point. Between series nothing is drawn:
     half of one model and half of another is no model.
 
-    Args:
-        points: Points of one side.
-        error: Error to keep.
-
     Returns:
         [s]; infinity where no point keeps it.
     """

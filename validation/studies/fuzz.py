@@ -98,13 +98,7 @@ class _Changed(Exception):
 
 
 def fuzz(count: int, seed: int, progress: Callable[[int], None] = lambda done: None) -> FuzzResult:
-    """Feed `count` inputs, of each kind in turn.
-
-    Args:
-        count: Count of inputs, all kinds together.
-        seed: Seed of the mutations.
-        progress: Called with the number of inputs done.
-    """
+    """Feed `count` inputs, of each kind in turn."""
     result = FuzzResult()
     sources = {kind: mutated_files(kind, seed) if kind in FILE_KINDS else mutated(kind, seed) for kind in KINDS}
     with tempfile.TemporaryDirectory() as name, _interrupted(), warnings.catch_warnings():

@@ -143,11 +143,6 @@ def _text(value: Decimal) -> str:
 def write(folder: Path, models: Sequence[Model], done: Callable[[str], None] = lambda name: None) -> None:
     """Write the data of some models; files of other models stay.
 
-    Args:
-        folder: Folder of the data.
-        models: Models to write.
-        done: Told of each model.
-
     Raises:
         OSError: The folder can't be written to.
     """

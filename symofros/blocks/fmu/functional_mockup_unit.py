@@ -19,7 +19,7 @@ from symofros.blocks.generic.sampling import needs_period
 from symofros.description.workers import Conversation
 from symofros.diagrams.block import Environment, Ports
 from symofros.diagrams.external_block import ExternalBlock, NativeCode, Running
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 
 Kind = Literal["co_simulation", "model_exchange"]
 _LOADING = 60.0  # [s]
@@ -157,7 +157,7 @@ class _RunningUnit(Running):
             when = "" if t is None else f" at t = {t:.9g} s"
             rule, remedy = "the unit loads, and answers at each sample", "ask its maker, or try another variant"
             what = f"block '{self._block.name}': the unit '{self._block.file}' fails{when}"
-            raise SymofrosError(Problem(what, f"{answer['fault']:.600}", rule, remedy))
+            raise SymofrosError(what, f"{answer['fault']:.600}", rule, remedy)
         return answer
 
     def call(self, t: float, inputs: Mapping[str, Array]) -> Mapping[str, Any]:

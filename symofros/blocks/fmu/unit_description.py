@@ -78,10 +78,6 @@ class UnitDescription:
 def unit_description(block: str, file: str) -> UnitDescription:
     """What the unit in a file states of itself; none of its code runs.
 
-    Args:
-        block: Name of the block, for messages.
-        file: Path of the unit.
-
     Raises:
         DescriptionError: There is no such unit, it can't be read, or FMPy is missing.
     """

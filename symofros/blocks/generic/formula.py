@@ -221,11 +221,6 @@ class _Function(Running):
 def read_formula(block: str, name: str, text: object) -> Expression:
     """A formula of a block, read by the parser of model files.
 
-    Args:
-        block: Name of the block.
-        name: What the formula is of.
-        text: The formula.
-
     Raises:
         DescriptionError: It is none.
     """
@@ -237,11 +232,6 @@ def read_formula(block: str, name: str, text: object) -> Expression:
 
 def input_sizes(block: str, formulas: Iterable[Expression], known: Set[str]) -> dict[str, int | None]:
     """Input that formulas name -> least size of its vector; None: a scalar.
-
-    Args:
-        block: Name of the block.
-        formulas: Its formulas.
-        known: Names in them that are no inputs.
 
     Raises:
         DescriptionError: An input is a scalar here and a vector there.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 
 from symofros.diagrams.block import Block
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 
 # Characters of a comment; what is longer belongs in a document.
 MOST = 2000
@@ -27,19 +27,15 @@ class Comment(Block):
         """A comment is of bounded length and has no sample time."""
         if len(self.text) > MOST:
             raise DescriptionError(
-                Problem(
-                    f"block '{self.name}': a comment that is too long",
-                    f"{len(self.text)} characters",
-                    f"at most {MOST} characters",
-                    "keep long texts in a document beside the diagram",
-                )
+                f"block '{self.name}': a comment that is too long",
+                f"{len(self.text)} characters",
+                f"at most {MOST} characters",
+                "keep long texts in a document beside the diagram",
             )
         if self.period is not None or self.offset:
             raise DescriptionError(
-                Problem(
-                    f"block '{self.name}': a comment has no samples",
-                    f"period {self.period}, offset {self.offset}",
-                    "a comment takes no part in a run",
-                    "drop period and offset",
-                )
+                f"block '{self.name}': a comment has no samples",
+                f"period {self.period}, offset {self.offset}",
+                "a comment takes no part in a run",
+                "drop period and offset",
             )

@@ -23,7 +23,7 @@ from symofros.blocks.turns import Turn
 from symofros.diagrams.block import Environment, Ports
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.signals import entries
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -127,12 +127,10 @@ class _Page:
         line = self.process.stdout.readline()
         if not line:
             raise SymofrosError(
-                Problem(
-                    f"block '{name}': the page does not start",
-                    "its program ended",
-                    "python -m symofros.blocks.graphics.live_page serves it",
-                    "see what it wrote to standard error",
-                )
+                f"block '{name}': the page does not start",
+                "its program ended",
+                "python -m symofros.blocks.graphics.live_page serves it",
+                "see what it wrote to standard error",
             )
         addresses = json.loads(line)
         self.port, self.url = addresses["udp"], addresses["url"]

@@ -14,19 +14,17 @@ from symofros.blocks.quantities import frame_ports, motion_port
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Values
 from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.settings import Plot
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 
 
 def open_ports(name: str, signals: tuple[str, ...], environment: Environment) -> Ports:
     """An input for each name, of any shape."""
     if not signals or len(set(signals)) < len(signals) or not all(signal.isidentifier() for signal in signals):
         raise DescriptionError(
-            Problem(
-                f"block '{name}': no inputs can be named so",
-                f"{list(signals)}"[:80],
-                "signals are different names, one an input",
-                "for example [desired, actual]",
-            )
+            f"block '{name}': no inputs can be named so",
+            f"{list(signals)}"[:80],
+            "signals are different names, one an input",
+            "for example [desired, actual]",
         )
     return Ports(tuple(Port(signal, environment.inputs.get(signal)) for signal in signals))
 
@@ -70,12 +68,10 @@ class Store(ExternalBlock):
         """The signals."""
         if "t" in self.signals or self.most < 1:
             raise DescriptionError(
-                Problem(
-                    f"block '{self.name}': can't store that",
-                    f"{self.signals}, {self.most}",
-                    "t is the name of the times, and at least one sample is kept",
-                    "rename the signal",
-                )
+                f"block '{self.name}': can't store that",
+                f"{self.signals}, {self.most}",
+                "t is the name of the times, and at least one sample is kept",
+                "rename the signal",
             )
         return open_ports(self.name, self.signals, environment)
 

@@ -19,7 +19,7 @@ from symofros.description import System
 from symofros.diagrams.block import Environment, Ports
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.external_block import ExternalBlock, Running
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 from symofros.studio.viewer.playing.diagram_motion import chosen_block
 from symofros.studio.viewer.viewer import Viewer
 
@@ -57,12 +57,10 @@ class View3D(ExternalBlock):
         """Coordinates q (nq); inputs u (nu), which matter where they prescribe motion."""
         if not (np.isfinite(self.exaggeration) and 0 <= self.port <= 65535):
             raise DescriptionError(
-                Problem(
-                    f"block '{self.name}': can't show that",
-                    f"exaggeration {self.exaggeration}, port {self.port}",
-                    "exaggeration is a finite number, a port is from 0 to 65535",
-                    "port 0 is any free one",
-                )
+                f"block '{self.name}': can't show that",
+                f"exaggeration {self.exaggeration}, port {self.port}",
+                "exaggeration is a finite number, a port is from 0 to 65535",
+                "port 0 is any free one",
             )
         record = environment.model(self.model)
         return Ports((motion_port("q", record, "q"), motion_port("u", record, "u", record.u_default)))

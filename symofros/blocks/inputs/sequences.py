@@ -15,7 +15,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.blocks.checks import choice, increasing, known_name, numbers, path_text, refuse
 from symofros.diagrams.block import Block, Environment, Port, Ports
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 from symofros.simulation.inputs import Signal
 from symofros.simulation.results.csv_columns import LineError, read_csv
 from symofros.simulation.results.npz import TooLargeError, read_npz
@@ -179,7 +179,7 @@ def _read(block: str, path: Path) -> dict[str, Any]:
     except LineError as error:
         what, found, rule = "a line of samples", ",".join(error.content)[:120], f"{error.columns} numbers a line"
         where = f"{path}:{error.line}"
-        raise DescriptionError(Problem(f"block '{block}': {what}", found, rule, "mend the line", where)) from None
+        raise DescriptionError(f"block '{block}': {what}", found, rule, "mend the line", where) from None
     except (OSError, ValueError, csv.Error) as error:
         raise refuse(
             block, f"file '{path}' is no {form}", error, "arrays of numbers by names", "write it anew"

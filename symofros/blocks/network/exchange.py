@@ -13,7 +13,7 @@ from symofros.base.arrays import Array
 from symofros.blocks.network.packets import MAX_VALUES, Reception, Silence, receiver_ports
 from symofros.diagrams.block import Environment, Port, Ports
 from symofros.diagrams.external_block import ExternalBlock, Running
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 
 LOCALHOST = "127.0.0.1"
 # Packets that one sample takes: a flood may not stop the loop.
@@ -39,21 +39,14 @@ class Exchange(ExternalBlock):
             ipaddress.ip_address(host)
         except ValueError:
             raise DescriptionError(
-                Problem(
-                    f"block '{self.name}': no address '{host:.60}'",
-                    f"'{host:.60}'",
-                    "a host is an IP address",
-                    "127.0.0.1 is this machine",
-                )
+                f"block '{self.name}': no address '{host:.60}'",
+                f"'{host:.60}'",
+                "a host is an IP address",
+                "127.0.0.1 is this machine",
             ) from None
         if not 1 <= port <= 65535:
             raise DescriptionError(
-                Problem(
-                    f"block '{self.name}': no port {port}",
-                    f"{port}",
-                    "a port is from 1 to 65535",
-                    "choose one above 1023",
-                )
+                f"block '{self.name}': no port {port}", f"{port}", "a port is from 1 to 65535", "choose one above 1023"
             )
 
     def reaches(self) -> str:
@@ -139,10 +132,8 @@ def check_size(name: str, size: int) -> None:
     """
     if not 1 <= size <= MAX_VALUES:
         raise DescriptionError(
-            Problem(
-                f"block '{name}': {size} values a packet",
-                f"{size}",
-                f"a packet holds 1 to {MAX_VALUES} values",
-                "send less, or by several blocks",
-            )
+            f"block '{name}': {size} values a packet",
+            f"{size}",
+            f"a packet holds 1 to {MAX_VALUES} values",
+            "send less, or by several blocks",
         )

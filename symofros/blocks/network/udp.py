@@ -19,7 +19,7 @@ from symofros.blocks.network.exchange import LOCALHOST, MAX_TAKEN, Exchange, Rec
 from symofros.blocks.network.packets import pack
 from symofros.diagrams.block import Environment
 from symofros.diagrams.external_block import Running
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 
 
 @dataclass(frozen=True, kw_only=True)
@@ -110,12 +110,10 @@ class UdpReceiver(_ByUdp, Receiver):
         except OSError as error:
             listener.close()
             raise SymofrosError(
-                Problem(
-                    f"block '{self.name}': can't listen at {self.host}:{self.port}",
-                    error.strerror or str(error),
-                    "one program, and one run of it at a time, listens at a port of this machine",
-                    "choose another port, or end the other program or run",
-                )
+                f"block '{self.name}': can't listen at {self.host}:{self.port}",
+                error.strerror or str(error),
+                "one program, and one run of it at a time, listens at a port of this machine",
+                "choose another port, or end the other program or run",
             ) from None
         return _Listening(self, listener)
 

@@ -46,12 +46,10 @@ class _ByZenoh(Exchange):
         key = self.key
         if not key or key.startswith("/") or key.endswith("/") or "//" in key or any(c in key for c in "?#$\0"):
             raise DescriptionError(
-                Problem(
-                    f"block '{self.name}': no key '{key:.60}'",
-                    f"'{key:.60}'",
-                    "names joined by '/', none of them empty",
-                    "for example arm/state",
-                )
+                f"block '{self.name}': no key '{key:.60}'",
+                f"'{key:.60}'",
+                "names joined by '/', none of them empty",
+                "for example arm/state",
             )
 
 
@@ -180,22 +178,18 @@ def _opened(block: _ByZenoh, declare: Callable[[Any], Any]) -> tuple[Any, Any]:
         session = zenoh.open(config)
     except zenoh.ZError as error:
         raise SymofrosError(
-            Problem(
-                f"block '{name}': can't open {address}",
-                f"{error}".split(" at /")[0][:200],
-                "one program listens at an address of this machine",
-                "choose another port, or let one program listen and the other connect",
-            )
+            f"block '{name}': can't open {address}",
+            f"{error}".split(" at /")[0][:200],
+            "one program listens at an address of this machine",
+            "choose another port, or let one program listen and the other connect",
         ) from None
     try:
         return session, declare(session)
     except zenoh.ZError as error:
         session.close()
         raise SymofrosError(
-            Problem(
-                f"block '{name}': no key '{block.key:.60}'",
-                f"{error}".split(" at /")[0][:200],
-                "a key as Zenoh has them",
-                "for example arm/state",
-            )
+            f"block '{name}': no key '{block.key:.60}'",
+            f"{error}".split(" at /")[0][:200],
+            "a key as Zenoh has them",
+            "for example arm/state",
         ) from None

@@ -29,7 +29,7 @@ from symofros.description.entries import pairs_of, refuses_unknown_entries
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
 from symofros.description.values import ORIGIN, Value, Vector, as_value, as_values, as_vector
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, did_you_mean
 
 Retain = Literal["zeroth_order", "first_order", "all"]
 RETAIN: tuple[Retain, ...] = get_args(Retain)
@@ -66,21 +66,17 @@ class BeamLoad:
         object.__setattr__(self, "torque", as_vector(self.torque, "beam load: torque"))
         if self.at is not None and not (isinstance(self.at, Real) and 0.0 <= self.at <= 1.0):
             raise DescriptionError(
-                Problem(
-                    "beam load: station off the beam",
-                    f"at {self.at!r}",
-                    "at is x/L, from 0 (root) to 1 (tip)",
-                    "divide the station by the length; leave at out for a load that is spread",
-                )
+                "beam load: station off the beam",
+                f"at {self.at!r}",
+                "at is x/L, from 0 (root) to 1 (tip)",
+                "divide the station by the length; leave at out for a load that is spread",
             )
         if self.axes not in ("body", "world", "section"):
             raise DescriptionError(
-                Problem(
-                    f"beam load: axes '{self.axes}'",
-                    str(self.axes),
-                    "axes are 'body', 'world' or 'section'",
-                    did_you_mean(str(self.axes), ("body", "world", "section")),
-                )
+                f"beam load: axes '{self.axes}'",
+                str(self.axes),
+                "axes are 'body', 'world' or 'section'",
+                did_you_mean(str(self.axes), ("body", "world", "section")),
             )
 
 
@@ -210,33 +206,27 @@ class Beam:
         for label, choice, known in choices:
             if choice not in known:
                 raise DescriptionError(
-                    Problem(
-                        f"{what}: unknown {label}",
-                        f"'{choice}'",
-                        f"one of {', '.join(known)}",
-                        did_you_mean(str(choice), known),
-                    )
+                    f"{what}: unknown {label}",
+                    f"'{choice}'",
+                    f"one of {', '.join(known)}",
+                    did_you_mean(str(choice), known),
                 )
         self._check_theory(what)
         self._check_shapes(what, given)
         for direction in STRAINS:
             if not _is_count(getattr(self, direction), 0):
                 raise DescriptionError(
-                    Problem(
-                        f"{what}: {direction} is not a number of functions",
-                        repr(getattr(self, direction)),
-                        "a whole number, 0 or more",
-                        "0 makes the beam rigid in that direction",
-                    )
+                    f"{what}: {direction} is not a number of functions",
+                    repr(getattr(self, direction)),
+                    "a whole number, 0 or more",
+                    "0 makes the beam rigid in that direction",
                 )
         if not _is_count(self.segments, 1):
             raise DescriptionError(
-                Problem(
-                    f"{what}: segments is not a number of segments",
-                    repr(self.segments),
-                    "a whole number, 1 or more",
-                    "1 leaves the beam in one piece",
-                )
+                f"{what}: segments is not a number of segments",
+                repr(self.segments),
+                "a whole number, 1 or more",
+                "1 leaves the beam in one piece",
             )
         self._check_stations(what)
 
@@ -248,7 +238,7 @@ class Beam:
         if rows and stated:
             rule = "a matrix has all stiffnesses, about the axis"
             raise DescriptionError(
-                Problem(f"{what}: stiffness and {', '.join(stated)}", "both", rule, "keep the one or the other")
+                f"{what}: stiffness and {', '.join(stated)}", "both", rule, "keep the one or the other"
             )
 
     def _check_stations(self, what: str) -> None:
@@ -257,86 +247,70 @@ class Beam:
         rising = all(a < b for a, b in pairwise(self.stations))
         if not rising or not all(0.0 <= xi <= 1.0 for xi in self.stations):
             raise DescriptionError(
-                Problem(
-                    f"{what}: stations of section forces",
-                    ", ".join(f"{xi:g}" for xi in self.stations),
-                    "stations x/L rise, from 0 (root) to 1 (tip) at most",
-                    "divide them by the length, and sort them",
-                )
+                f"{what}: stations of section forces",
+                ", ".join(f"{xi:g}" for xi in self.stations),
+                "stations x/L rise, from 0 (root) to 1 (tip) at most",
+                "divide them by the length, and sort them",
             )
         if not self.modes and self.stations != STATIONS:
             raise DescriptionError(
-                Problem(
-                    f"{what}: stations of section forces on a rigid beam",
-                    ", ".join(f"{xi:g}" for xi in self.stations),
-                    "section forces are those of beams with shape functions; a rigid beam is one rigid body",
-                    "leave stations out, or state functions of bend_y, bend_z or twist",
-                )
+                f"{what}: stations of section forces on a rigid beam",
+                ", ".join(f"{xi:g}" for xi in self.stations),
+                "section forces are those of beams with shape functions; a rigid beam is one rigid body",
+                "leave stations out, or state functions of bend_y, bend_z or twist",
             )
 
     def _check_shapes(self, what: str, given: Iterable[str]) -> None:
         """Functions of the user, which one family alone has."""
         if self.shapes and self.family != "user":
             raise DescriptionError(
-                Problem(
-                    f"{what}: shapes with family '{self.family}'",
-                    ", ".join(key for key, _ in self.shapes),
-                    "functions of the user are those of family 'user'; other families have their own",
-                    "state family: user, or leave shapes out",
-                )
+                f"{what}: shapes with family '{self.family}'",
+                ", ".join(key for key, _ in self.shapes),
+                "functions of the user are those of family 'user'; other families have their own",
+                "state family: user, or leave shapes out",
             )
         for key in given:
             if key not in STRAINS:
                 raise DescriptionError(
-                    Problem(
-                        f"{what}: shapes for an unknown direction",
-                        f"'{key}'",
-                        f"one of {', '.join(STRAINS)}",
-                        did_you_mean(str(key), STRAINS),
-                    )
+                    f"{what}: shapes for an unknown direction",
+                    f"'{key}'",
+                    f"one of {', '.join(STRAINS)}",
+                    did_you_mean(str(key), STRAINS),
                 )
 
     def _check_theory(self, what: str) -> None:
         """Entries that one theory has and the other lacks."""
         if not _is_count(self.sections, 0) or self.sections > MAX_SECTIONS:
             raise DescriptionError(
-                Problem(
-                    f"{what}: sections is not a number of sections",
-                    repr(self.sections),
-                    f"a whole number from 0, which leaves the choice to the generator, to {MAX_SECTIONS}",
-                    "leave it out",
-                )
+                f"{what}: sections is not a number of sections",
+                repr(self.sections),
+                f"a whole number from 0, which leaves the choice to the generator, to {MAX_SECTIONS}",
+                "leave it out",
             )
         elastic = self.elastic
         if not elastic.is_exact and any(load.axes == "section" for load in self.loads):
             raise DescriptionError(
-                Problem(
-                    f"{what}: a load along the axes of the sections",
-                    f"theory '{self.theory}'",
-                    "sections of a beam of second order turn by small angles: a load does not follow them exactly",
-                    "state theory: strain, or put a rigid body with a load on a frame of the beam",
-                )
+                f"{what}: a load along the axes of the sections",
+                f"theory '{self.theory}'",
+                "sections of a beam of second order turn by small angles: a load does not follow them exactly",
+                "state theory: strain, or put a rigid body with a load on a frame of the beam",
             )
         lacking_direction = next((key for key, _ in self.shapes if key not in elastic.directions), None)
         if lacking_direction is not None:
             raise DescriptionError(
-                Problem(
-                    f"{what}: shapes for {lacking_direction}",
-                    f"theory '{self.theory}'",
-                    f"{elastic.noun} has functions for {', '.join(elastic.directions)}",
-                    f"leave shapes for {lacking_direction} out, or state theory: strain",
-                )
+                f"{what}: shapes for {lacking_direction}",
+                f"theory '{self.theory}'",
+                f"{elastic.noun} has functions for {', '.join(elastic.directions)}",
+                f"leave shapes for {lacking_direction} out, or state theory: strain",
             )
         defaults = {item.name: item.default for item in fields(self)}
         for label in elastic.lacking:
             if getattr(self, label) != defaults[label]:
                 raise DescriptionError(
-                    Problem(
-                        f"{what}: {label} = {getattr(self, label)}",
-                        f"theory '{self.theory}'",
-                        f"{elastic.noun} {elastic.lacks}: it has no entry {label}",
-                        f"leave {label} out, or state the other theory",
-                    )
+                    f"{what}: {label} = {getattr(self, label)}",
+                    f"theory '{self.theory}'",
+                    f"{elastic.noun} {elastic.lacks}: it has no entry {label}",
+                    f"leave {label} out, or state the other theory",
                 )
 
     @property

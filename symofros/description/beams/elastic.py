@@ -15,7 +15,7 @@ from typing import Any, Literal, get_args
 
 from symofros.base.arguments import entries_of
 from symofros.description.values import Value, as_values
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 
 Theory = Literal["second_order", "strain"]
 THEORIES: tuple[Theory, ...] = get_args(Theory)
@@ -100,10 +100,6 @@ _ASYMMETRY = 1e-6
 def stiffness_rows(stated: Any, label: str) -> tuple[tuple[Value, ...], ...]:
     """A matrix of stiffness (6, 6), made symmetric where rounding left a difference; empty where none is stated.
 
-    Args:
-        stated: Its rows, or nothing.
-        label: What it is, for errors.
-
     Raises:
         DescriptionError: It has other rows, or is not symmetric.
     """
@@ -114,7 +110,7 @@ def stiffness_rows(stated: Any, label: str) -> tuple[tuple[Value, ...], ...]:
     size = len(MATRIX_ORDER)
     if len(listed) != size:
         rule = f"{size} rows of {size} entries: {', '.join(MATRIX_ORDER)}"
-        raise DescriptionError(Problem(label, f"{len(listed)} rows", rule, "give all, zeros included"))
+        raise DescriptionError(label, f"{len(listed)} rows", rule, "give all, zeros included")
     rows = [list(as_values(row, size, f"{label}[{i}]")) for i, row in enumerate(listed)]
     for i, j in combinations(range(size), 2):
         a, b, first, second = rows[i][j], rows[j][i], rows[i][i], rows[j][j]
@@ -126,5 +122,5 @@ def stiffness_rows(stated: Any, label: str) -> tuple[tuple[Value, ...], ...]:
                 continue
         rule = "a matrix of stiffness is symmetric: forces have the strain energy as their potential"
         found = f"[{i}][{j}] is {a}, [{j}][{i}] is {b}"
-        raise DescriptionError(Problem(f"{label} is not symmetric", found, rule, "state the same value for both"))
+        raise DescriptionError(f"{label} is not symmetric", found, rule, "state the same value for both")
     return tuple(map(tuple, rows))

@@ -16,7 +16,7 @@ from symofros.description.forces import Anchor
 from symofros.description.frames import Frame
 from symofros.description.joints.joint import Joint
 from symofros.description.values import Term, Value, Vector, substituted
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 from symofros.expr.expression import Expression
 
 # Extremity frame of each segment but the last, that carries the next; underscores follow where the beam has such one.
@@ -33,21 +33,16 @@ def segments_of(beam: Beam) -> tuple[Beam, ...]:
 
     The first bears the beam's name and joint, the last its extremity frames.
 
-    Args:
-        beam: Beam as stated.
-
     Raises:
         DescriptionError: A load has components along the axes of the undeformed beam, which segments do not have.
     """
     for load in beam.loads:
         if load.axes == "body":
             raise DescriptionError(
-                Problem(
-                    f"beam '{beam.name}': a load along axes of the body, of a beam in segments",
-                    f"{beam.segments} segments",
-                    "segments turn, so that the axes of the undeformed beam are not theirs",
-                    "give the load along axes of the world, or put a rigid body with a load on the tip",
-                )
+                f"beam '{beam.name}': a load along axes of the body, of a beam in segments",
+                f"{beam.segments} segments",
+                "segments turn, so that the axes of the undeformed beam are not theirs",
+                "give the load along axes of the world, or put a rigid body with a load on the tip",
             )
     names, n, end = segment_names(beam), beam.segments, _END
     while any(frame.name == end for frame in beam.frames):

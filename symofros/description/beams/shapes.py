@@ -8,7 +8,7 @@ from typing import Any, Literal, get_args
 
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import Value, as_value
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 
 Family = Literal["spline", "polynomial", "legendre", "clamped_free", "hermite", "user"]
 FAMILIES: tuple[Family, ...] = get_args(Family)
@@ -34,22 +34,18 @@ class Samples:
         rising = all(a < b for a, b in zip(self.xi, self.xi[1:], strict=False))
         if len(self.xi) < 4 or len(self.xi) != len(self.values) or not rising or (self.xi[0], self.xi[-1]) != (0, 1):
             raise DescriptionError(
-                Problem(
-                    "sampled shape function: unusable stations",
-                    f"{len(self.xi)} stations, {len(self.values)} values",
-                    "at least 4 stations that rise from 0 to 1, and one value for each",
-                    "sort the stations, divide them by the length, and give each its value",
-                )
+                "sampled shape function: unusable stations",
+                f"{len(self.xi)} stations, {len(self.values)} values",
+                "at least 4 stations that rise from 0 to 1, and one value for each",
+                "sort the stations, divide them by the length, and give each its value",
             )
         if not all(map(math.isfinite, self.values)):
             at = next(i for i, value in enumerate(self.values) if not math.isfinite(value))
             raise DescriptionError(
-                Problem(
-                    "sampled shape function: a value is not a finite number",
-                    f"{self.values[at]} at xi = {self.xi[at]:g}",
-                    "values of shape functions are finite numbers",
-                    "mend or leave out the sample",
-                )
+                "sampled shape function: a value is not a finite number",
+                f"{self.values[at]} at xi = {self.xi[at]:g}",
+                "values of shape functions are finite numbers",
+                "mend or leave out the sample",
             )
 
 

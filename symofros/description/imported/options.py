@@ -5,7 +5,7 @@ from __future__ import annotations
 from dataclasses import dataclass
 from typing import Literal, get_args
 
-from symofros.errors import ArgumentError, Problem, did_you_mean
+from symofros.errors import ArgumentError, did_you_mean
 
 Dissipation = Literal["none", "viscous", "all", "stiction"]
 LimitsAs = Literal["data", "stops"]
@@ -43,12 +43,12 @@ class ImportOptions:
         """
         if not 0.0 <= self.snap_tol < 0.1:
             rule = "0 <= snap_tol < 0.1, so that it absorbs rounding only"
-            raise ArgumentError(Problem("snap_tol is not a small number", str(self.snap_tol), rule, "leave it out"))
+            raise ArgumentError("snap_tol is not a small number", str(self.snap_tol), rule, "leave it out")
         for name, words in (("dissipation", get_args(Dissipation)), ("limits", get_args(LimitsAs))):
             word = getattr(self, name)
             if word is not None and word not in words:
                 rule, remedy = f"one of {', '.join(words)}", did_you_mean(str(word), words)
-                raise ArgumentError(Problem(f"{name}: unknown choice", f"'{word!s:.40}'", rule, remedy))
+                raise ArgumentError(f"{name}: unknown choice", f"'{word!s:.40}'", rule, remedy)
 
 
 DEFAULT_OPTIONS = ImportOptions()

@@ -8,7 +8,7 @@ from symofros.description.entries import refuses_unknown_entries
 from symofros.description.forces import JointElement, Rotor
 from symofros.description.joints.joint_kinds import JOINT_KINDS, KINDS, JointKind, JointKindName
 from symofros.description.values import IDENTITY, ORIGIN, Rotation, Value, Vector, as_value, as_vector
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, did_you_mean
 
 WORLD = "world"
 
@@ -37,7 +37,7 @@ class Limits:
             if size is not None and size < 0.0:
                 rule = f"the limit of {label} is a size, for both directions"
                 raise DescriptionError(
-                    Problem(f"limits: {label} is negative", f"{size:g}", rule, "leave it out where there is none")
+                    f"limits: {label} is negative", f"{size:g}", rule, "leave it out where there is none"
                 )
 
 
@@ -94,12 +94,10 @@ class Joint:
         what = f"joint '{self.name}'"
         if self.kind not in JOINT_KINDS:
             raise DescriptionError(
-                Problem(
-                    f"{what}: unknown kind",
-                    f"'{self.kind}'",
-                    f"one of {', '.join(JOINT_KINDS)}",
-                    did_you_mean(str(self.kind), JOINT_KINDS),
-                )
+                f"{what}: unknown kind",
+                f"'{self.kind}'",
+                f"one of {', '.join(JOINT_KINDS)}",
+                did_you_mean(str(self.kind), JOINT_KINDS),
             )
         object.__setattr__(self, "position", as_vector(self.position, f"{what}: position"))
         object.__setattr__(self, "axis", as_vector(self.axis, f"{what}: axis"))

@@ -45,13 +45,7 @@ class Folder:
         return root
 
     def mesh(self, file: str, user: Element, what: str) -> bytes | None:
-        """The content of a mesh file; None after a fault.
-
-        Args:
-            file: File name as the model states it.
-            user: The element that states it.
-            what: The mesh and what needs it, for the problem.
-        """
+        """The content of a mesh file; None after a fault."""
         path = self._place(file, user, self.main.parent)
         if path is None:
             return None
@@ -107,13 +101,11 @@ class Folder:
         """Replace each <include> in an element, at any depth, by the included elements."""
         if depth > MAX_DEPTH:
             raise DescriptionError(
-                Problem(
-                    f"nested deeper than {MAX_DEPTH}, includes counted",
-                    f"<{element.tag:.60}>",
-                    "a robot needs fewer",
-                    "check that it is the file you meant",
-                    element.where,
-                )
+                f"nested deeper than {MAX_DEPTH}, includes counted",
+                f"<{element.tag:.60}>",
+                "a robot needs fewer",
+                "check that it is the file you meant",
+                element.where,
             )
         children: list[Element] = []
         for child in element.children:

@@ -83,13 +83,11 @@ def vetted(folder: Folder, remarks: Remarks) -> Document:
     if root.tag != "mujoco":
         remedy = "name a URDF file .urdf" if root.tag == "robot" else ""
         raise DescriptionError(
-            Problem(
-                "the file is not an MJCF model",
-                f"the root element is <{root.tag:.60}>",
-                "the root element is <mujoco>",
-                remedy,
-                root.where,
-            )
+            "the file is not an MJCF model",
+            f"the root element is <{root.tag:.60}>",
+            "the root element is <mujoco>",
+            remedy,
+            root.where,
         )
     sections = Sections(folder, remarks)
     kept = sections.kept(root)

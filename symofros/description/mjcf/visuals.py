@@ -43,12 +43,7 @@ class Texture:
 
 
 def textures_of(folder: Folder, stated: Element) -> dict[str, Texture]:
-    """Material -> its texture, of those that have one that may be read.
-
-    Args:
-        folder: Folder of the model.
-        stated: The document as it was written.
-    """
+    """Material -> its texture, of those that have one that may be read."""
     settings = compiler_settings(stated)
     base = settings.get("texturedir", settings.get("assetdir", ""))
     classes = defaults(stated, "material")

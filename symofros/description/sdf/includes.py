@@ -106,7 +106,7 @@ class Includes:
         if self._count > MAX_INCLUDES or self._elements > MAX_ELEMENTS:
             stated = f"more than {MAX_INCLUDES} includes, or {MAX_ELEMENTS} elements in them"
             raise DescriptionError(
-                Problem("the file includes too much", stated, "a mechanism is smaller", "split it", include.where)
+                "the file includes too much", stated, "a mechanism is smaller", "split it", include.where
             )
 
     def _is_plain(self, include: Element, within: Element) -> bool:

@@ -108,13 +108,7 @@ class JointReader:
             self.frames.add(name, element, scope, ends[1], ends[1])
 
     def carried(self, joint: SdfJoint, child: str, parent: str) -> ImportedBody:
-        """A link with its joint, whose D is at J with the axes of the link.
-
-        Args:
-            joint: The joint.
-            child: Link that it moves.
-            parent: Link that carries it, or the world.
-        """
+        """A link with its joint, whose D is at J with the axes of the link."""
         C, J = self.frames.relative(child, parent), self.frames.relative(joint.name, child)
         # A shift is the same wherever it is anchored.
         offset = np.zeros(3) if joint.kind in ("prismatic", "fixed") else np.array(self.exact.vector(J.p))

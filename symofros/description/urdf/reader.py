@@ -30,7 +30,7 @@ from symofros.description.urdf.visuals import Visuals
 from symofros.description.values import ORIGIN, Rotation, Vector
 from symofros.description.visual import Visual
 from symofros.description.xml_nodes import Element, parse_xml
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, did_you_mean
 
 MAX_BYTES = 16 << 20
 MAX_LINKS = 10_000
@@ -66,13 +66,11 @@ def read_urdf(
     root = parse_xml(content, file)
     if root.tag != "robot":
         raise DescriptionError(
-            Problem(
-                "the file is not a URDF",
-                f"the root element is <{root.tag:.60}>",
-                "the root element is <robot>",
-                "check that it is the file you meant",
-                f"{file}:{root.line}",
-            )
+            "the file is not a URDF",
+            f"the root element is <{root.tag:.60}>",
+            "the root element is <robot>",
+            "check that it is the file you meant",
+            f"{file}:{root.line}",
         )
     reading = _Importer(packages or Packages(Path(path)), Values(file, options.snap_tol), root, options).reading()
     return replace(reading, sources=(Source.of(Path(path), content),)) if text is None else reading

@@ -62,11 +62,7 @@ class UsdJoint:
 
 
 def motion_of(row: Mapping[str, Any]) -> tuple[Motion, int, tuple[float, float]] | str:
-    """Free motion of a joint, index of its axis, and its bounds; or the reason why it can't be read.
-
-    Args:
-        row: What the stage states of it.
-    """
+    """Free motion of a joint, index of its axis, and its bounds; or the reason why it can't be read."""
     axis, kind = _AXIS[row["axis"] or "X"], row["kind"]
     bounds = number(row["lower"], -math.inf), number(row["upper"], math.inf)
     if kind == "fixed":

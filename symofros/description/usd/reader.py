@@ -108,7 +108,7 @@ class _Importer:
         """
         if not self.bodies:
             rule, remedy = "a mechanism has prims with PhysicsRigidBodyAPI", "apply UsdPhysics to the stage"
-            raise DescriptionError(Problem("there is no rigid body", "no such prim", rule, remedy, self.file))
+            raise DescriptionError("there is no rigid body", "no such prim", rule, remedy, self.file)
         for path, name in self.names.items():
             self._remark_body(self.bodies[path], name)
             if not self.placements[path].is_rigid:

@@ -49,13 +49,11 @@ def stage_of(path: str | os.PathLike[str]) -> dict[str, Any]:
     if "stage" not in answer:
         warnings = "".join(f"; {text:.300}" for text in warnings_of(answer["printed"])[-1:])
         raise DescriptionError(
-            Problem(
-                "OpenUSD can't read the file",
-                f"{_first_fault(answer.get('fault', 'nothing')):.500}{warnings}",
-                "a stage whose layers are at hand",
-                "mend it; `usdchecker FILE` (OpenUSD's own) says more",
-                str(path),
-            )
+            "OpenUSD can't read the file",
+            f"{_first_fault(answer.get('fault', 'nothing')):.500}{warnings}",
+            "a stage whose layers are at hand",
+            "mend it; `usdchecker FILE` (OpenUSD's own) says more",
+            str(path),
         )
     stage: dict[str, Any] = answer["stage"]
     return {**stage, "warnings": warnings_of(answer["printed"])}
@@ -95,13 +93,11 @@ def _refuse_outside(file: Path, layers: Iterable[str]) -> None:
     for layer in layers:
         if not resolved(Path(layer)).is_relative_to(folder):
             raise DescriptionError(
-                Problem(
-                    "the stage is made of files of other folders",
-                    f"'{layer}'",
-                    f"all layers lie in the folder of the file, '{folder}', or below",
-                    "flatten it: `usdcat --flatten FILE -o FLAT.usdc`, or move the layers there",
-                    str(file),
-                )
+                "the stage is made of files of other folders",
+                f"'{layer}'",
+                f"all layers lie in the folder of the file, '{folder}', or below",
+                "flatten it: `usdcat --flatten FILE -o FLAT.usdc`, or move the layers there",
+                str(file),
             )
 
 

@@ -124,11 +124,7 @@ def _time() -> Any:
 
 
 def stage_data(file: str) -> dict[str, Any]:
-    """Contents of a stage: "stage", its "layers" and what is "missing"; or a "fault".
-
-    Args:
-        file: Path of its root layer.
-    """
+    """Contents of a stage: "stage", its "layers" and what is "missing"; or a "fault"."""
     from pxr import Usd, UsdGeom, UsdPhysics  # An extra, looked for by `main`.
 
     stage = Usd.Stage.Open(file)

@@ -78,10 +78,6 @@ def read_yaml(
 def read_event(name: str, node: Node) -> Event:
     """An event of a file of another kind, which states it as native files do.
 
-    Args:
-        name: Its key.
-        node: Its entry.
-
     Raises:
         YamlFault: With every problem, each at ":line".
     """
@@ -320,13 +316,11 @@ def _refuse_diagram(root: Node, shown: str) -> None:
     """
     if isinstance(root.value, dict) and DIAGRAM in root.value and "symofros" not in root.value:
         raise DescriptionError(
-            Problem(
-                "the file is a diagram of blocks, not a mechanism",
-                f"it begins with {DIAGRAM}",
-                "a description of a mechanism begins with symofros: 1",
-                "open the model that the diagram names under 'models'; `symofros simulate` runs diagrams",
-                f"{shown}:{root.value[DIAGRAM].key_line}",
-            )
+            "the file is a diagram of blocks, not a mechanism",
+            f"it begins with {DIAGRAM}",
+            "a description of a mechanism begins with symofros: 1",
+            "open the model that the diagram names under 'models'; `symofros simulate` runs diagrams",
+            f"{shown}:{root.value[DIAGRAM].key_line}",
         )
 
 

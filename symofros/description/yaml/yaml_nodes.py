@@ -103,7 +103,7 @@ def decoded(data: bytes, file: str) -> str:
         line = data.count(b"\n", 0, error.start) + 1
         bad_byte = f"byte 0x{data[error.start]:02x}"
         raise YamlFault(
-            Problem("the text is not UTF-8", bad_byte, "files are in UTF-8", "save the file as UTF-8", f"{file}:{line}")
+            "the text is not UTF-8", bad_byte, "files are in UTF-8", "save the file as UTF-8", f"{file}:{line}"
         ) from None
 
 
@@ -119,10 +119,6 @@ def too_many_nodes(where: str) -> Problem:
 
 def compose_whole(text: str, file: str) -> tuple[Node, list[Problem]]:
     """Read one YAML document; see `yaml_pieces.compose_text`.
-
-    Args:
-        text: Text of the document.
-        file: File name, for the problems.
 
     Returns:
         The root, and the duplicate keys that were found (the first of each counts).
@@ -144,9 +140,7 @@ def compose_whole(text: str, file: str) -> tuple[Node, list[Problem]]:
         raise YamlFault(_not_yaml(" ".join(str(error).split())[:200], file)) from None
     if builder.root is None:
         raise YamlFault(
-            Problem(
-                "the file is empty", "no document", "a description is a YAML mapping", "begin with symofros: 1", file
-            )
+            "the file is empty", "no document", "a description is a YAML mapping", "begin with symofros: 1", file
         )
     return builder.root, builder.problems
 
@@ -229,7 +223,7 @@ class _Builder:
             self.open.pop()[0].end = event.end_mark.index
 
     def fault(self, what: str, found: str, rule: str, line: int, remedy: str = "") -> YamlFault:
-        return YamlFault(Problem(what, found, rule, remedy, f"{self.file}:{line}"))
+        return YamlFault(what, found, rule, remedy, f"{self.file}:{line}")
 
     def refuse_extras(self, event: Event, line: int) -> None:
         anchor, tag = getattr(event, "anchor", None), getattr(event, "tag", None)

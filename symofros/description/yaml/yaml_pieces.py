@@ -136,14 +136,7 @@ class _Composer:
         self.nodes = 0
 
     def mapping(self, parts: list[str], at: int, line: int, levels: int) -> Node:
-        """The block mapping of some entries.
-
-        Args:
-            parts: Entries, after what is before them.
-            at: Position in the text.
-            line: Line there.
-            levels: Levels of mappings that are taken to pieces.
-        """
+        """The block mapping of some entries."""
         at, line = at + len(parts[0]), line + parts[0].count("\n")
         owner = Node(line, {}, line, at + _indentation(parts[1]), style="block")
         self.nodes += 1

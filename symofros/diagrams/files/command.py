@@ -20,7 +20,7 @@ from symofros.diagrams.result import DiagramRun
 from symofros.diagrams.run.jitter import Jitter, histogram, jitter_of
 from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.simulation import Simulation
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.simulation.progress import pace_of
 from symofros.simulation.results.plots import check_picture, write_picture
 from symofros.simulation.results.saving import check_file, save_or_keep
@@ -73,12 +73,7 @@ def run_diagram(diagram: Diagram, request: RunRequest, progress: bool) -> Diagra
         stated["realtime"] = request.speed
     if request.jitter and not stated.get("realtime"):
         raise SymofrosError(
-            Problem(
-                "--jitter: the run keeps no pace",
-                "no --realtime",
-                "jitter is measured in real time",
-                "add --realtime",
-            )
+            "--jitter: the run keeps no pace", "no --realtime", "jitter is measured in real time", "add --realtime"
         )
     if request.output:
         check_file(request.output, "run")

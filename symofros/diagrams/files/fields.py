@@ -70,10 +70,6 @@ def words_for(kind: Any) -> str:
 def read(kind: Any, node: Node) -> Any:
     """The value of a field from a node.
 
-    Args:
-        kind: The field's type.
-        node: Node of the file.
-
     Raises:
         Misfit: The node is not of that type.
         YamlFault: An event is none.

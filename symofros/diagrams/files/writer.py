@@ -25,7 +25,7 @@ from symofros.diagrams.files.reading_options import reading_entries
 from symofros.diagrams.files.registry import entry_of, kind_of
 from symofros.diagrams.program.variants import with_functions
 from symofros.diagrams.settings import RunSettings
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 from symofros.loading import load, save
 
 Plain = dict[str, Any]
@@ -52,12 +52,10 @@ def save_diagram(diagram: Diagram, path: str | os.PathLike[str]) -> list[Path]:
     file = Path(path)
     if file.suffix.lower() not in DIAGRAMS:
         raise DescriptionError(
-            Problem(
-                f"diagram '{diagram.name}' can't be written to '{file.name}'",
-                file.suffix or "no suffix",
-                f"it ends in {' or '.join(DIAGRAMS)}",
-                "choose one of them",
-            )
+            f"diagram '{diagram.name}' can't be written to '{file.name}'",
+            file.suffix or "no suffix",
+            f"it ends in {' or '.join(DIAGRAMS)}",
+            "choose one of them",
         )
     writer = _Writer(file)
     document = {HEAD: VERSION, **writer.document(diagram)}
@@ -168,12 +166,10 @@ def _replayed(diagram: Diagram) -> Diagram:
         changed += [".".join(key) for key, source in replayed.wires.items() if diagram.wires.get(key) != source]
         if changed:
             raise DescriptionError(
-                Problem(
-                    f"diagram '{diagram.name}': part '{name}' can't be written",
-                    changed[0],
-                    "a part is written as it was included",
-                    "change the part before it is included",
-                )
+                f"diagram '{diagram.name}': part '{name}' can't be written",
+                changed[0],
+                "a part is written as it was included",
+                "change the part before it is included",
             )
     return replayed
 
@@ -237,12 +233,10 @@ def _block(diagram: Diagram, block: Block, folder: Path) -> Plain:
             entries[entry_of(item.name)] = _path(value, folder) if item.name in block.paths and value else write(value)
         except TypeError as error:
             raise DescriptionError(
-                Problem(
-                    f"diagram '{diagram.name}': block '{block.name}' can't be written: {item.name}",
-                    f"{error}",
-                    "files state numbers, texts, lists of them, and files of their folder",
-                    "copy such a file there, or keep this diagram in Python",
-                )
+                f"diagram '{diagram.name}': block '{block.name}' can't be written: {item.name}",
+                f"{error}",
+                "files state numbers, texts, lists of them, and files of their folder",
+                "copy such a file there, or keep this diagram in Python",
             ) from None
     inputs = {port: source for (name, port), source in diagram.wires.items() if name == block.name}
     return entries | ({"inputs": inputs} if inputs else {})

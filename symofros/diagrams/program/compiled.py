@@ -133,13 +133,11 @@ def lowered(wired: Wired, name: str) -> Piece:
     except (ValueError, IndexError, TypeError) as error:
         shapes = ", ".join(f"{port.name} {port.shape}" for port in wired.ports[name].inputs)
         raise DescriptionError(
-            Problem(
-                f"block '{name}': its fields do not fit its inputs",
-                f"{error}"[:200],
-                f"inputs here: {shapes or 'none'}",
-                "mend the shapes of its fields",
-                origin,
-            )
+            f"block '{name}': its fields do not fit its inputs",
+            f"{error}"[:200],
+            f"inputs here: {shapes or 'none'}",
+            "mend the shapes of its fields",
+            origin,
         ) from None
 
 
@@ -218,12 +216,10 @@ def compile_diagram(resolved: Resolved, options: Options | None = None) -> Compi
     options = options or Options()
     if options.backend == "interpreter":
         raise CompileError(
-            Problem(
-                f"diagram '{resolved.wired.name}': backend '{options.backend}'",
-                "a loop of compiled functions",
-                "the functions of a compiled diagram are C or tapes",
-                "interpret it: Simulation.interpret(compiled=False)",
-            )
+            f"diagram '{resolved.wired.name}': backend '{options.backend}'",
+            "a loop of compiled functions",
+            "the functions of a compiled diagram are C or tapes",
+            "interpret it: Simulation.interpret(compiled=False)",
         )
     toolchain = find_toolchain(options.compiler) if options.backend == "c" else None
     if toolchain is None and options.backend == "c":

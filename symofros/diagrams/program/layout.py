@@ -20,7 +20,7 @@ from symofros.diagrams.block import Shape
 from symofros.diagrams.inlets import Inlet
 from symofros.diagrams.program.lowered_block import Piece
 from symofros.diagrams.wiring import Source, Wired
-from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
+from symofros.errors import DescriptionError, UnknownNameError, did_you_mean
 from symofros.runtime.record import Segment
 from symofros.simulation.inputs import Signal
 
@@ -253,7 +253,7 @@ class Layout:
             return entries[name]
         what, rule = f"diagram: no state '{name}' that begins with a value", f"known: {', '.join(entries)}"
         remedy = did_you_mean(name, entries) or "symofros info lists states; outputs and parameters are none"
-        raise UnknownNameError(Problem(what, f"'{name}'", rule[:400], remedy))
+        raise UnknownNameError(what, f"'{name}'", rule[:400], remedy)
 
     @property
     def moving(self) -> Mask:
@@ -274,7 +274,7 @@ class Layout:
             return Place(q.start, (q.size - of_forces,)), Place(v.start, (v.size - of_forces,))
         known = ", ".join(self.q) or "none"
         what, remedy = f"block '{block}' moves no mechanism", did_you_mean(block, self.q) or "name a plant's"
-        raise UnknownNameError(Problem(what, f"those that do: {known}", "motions are of mechanisms", remedy))
+        raise UnknownNameError(what, f"those that do: {known}", "motions are of mechanisms", remedy)
 
 
 def lay_out(wired: Wired, pieces: Mapping[str, Piece], groups: Sequence[Sequence[str]]) -> Layout:
@@ -312,12 +312,10 @@ def _locks(layout: Layout, wired: Wired, name: str, piece: Piece) -> None:
         place = layout.held.get(wired.sources.get((name, port), ("", "")))
         if place is None:
             raise DescriptionError(
-                Problem(
-                    f"block '{name}': input '{port}' is not held between samples",
-                    "a continuous signal",
-                    "constraints engage at samples",
-                    "put a hold with a period before it",
-                )
+                f"block '{name}': input '{port}' is not held between samples",
+                "a continuous signal",
+                "constraints engage at samples",
+                "put a hold with a period before it",
             )
         layout.lock_inputs += range(place.start, place.start + place.size)
         layout.lock_names += [f"{name}.{port}[{k}]" for k in range(place.size)]

@@ -13,7 +13,7 @@ from symofros.diagrams.external_block import ExternalBlock
 from symofros.diagrams.program.switching import Switching, switching_of
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Wired, surroundings
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 from symofros.expr import Edge, Graph, needed_nodes
 
 # Groups of inputs of a piece that belong to one port, state, memory or parameter begin with these.
@@ -154,27 +154,17 @@ def _refuse_missing(name: str, block: Block, parameters: Mapping[str, Array]) ->
     for key, value in parameters.items():
         if np.any(np.isnan(value)):  # Of None, too.
             raise DescriptionError(
-                Problem(
-                    f"block '{name}': {key} is not a number",
-                    f"{getattr(block, key)}"[:80],
-                    "a parameter is one number or an array of them",
-                    "state it",
-                )
+                f"block '{name}': {key} is not a number",
+                f"{getattr(block, key)}"[:80],
+                "a parameter is one number or an array of them",
+                "state it",
             )
 
 
 def _context(
     g: Graph, wired: Wired, name: str, known: Environment, own: Sequence[Mapping[str, Array]]
 ) -> EvaluationContext:
-    """Evaluation context of a block: the symbolic inputs of its formulas.
-
-    Args:
-        g: Graph of the block.
-        wired: The diagram.
-        name: The block.
-        known: What it knows of the diagram.
-        own: Its states, memory and parameters.
-    """
+    """Evaluation context of a block: the symbolic inputs of its formulas."""
     mechanism, (states, memory, parameters) = wired.blocks[name].mechanism(), own
     nq = nv = nc = 0
     if mechanism:
@@ -225,31 +215,25 @@ def _fit(wired: Wired, piece: Piece) -> None:
     moving = bool(piece.states or block.mechanism() or piece.crossings)
     if piece.is_discrete and moving:
         raise DescriptionError(
-            Problem(
-                f"block '{name}' is sampled and moves between samples",
-                f"period {block.period}",
-                "continuous states belong to continuous blocks",
-                "leave the period out",
-            )
+            f"block '{name}' is sampled and moves between samples",
+            f"period {block.period}",
+            "continuous states belong to continuous blocks",
+            "leave the period out",
         )
     watched = {*piece.begins, *(key for jump in piece.jumps.values() for key in jump)}
     if not piece.is_discrete and piece.memory.keys() - watched:
         raise DescriptionError(
-            Problem(
-                f"block '{name}' has memory and no sample time",
-                ", ".join(piece.memory),
-                "memory changes at samples or at crossings",
-                "give a period",
-            )
+            f"block '{name}' has memory and no sample time",
+            ", ".join(piece.memory),
+            "memory changes at samples or at crossings",
+            "give a period",
         )
     if piece.is_external and not piece.is_discrete:
         raise DescriptionError(
-            Problem(
-                f"block '{name}' calls Python and has no sample time",
-                "period None",
-                "Python is called at samples",
-                "give a period",
-            )
+            f"block '{name}' calls Python and has no sample time",
+            "period None",
+            "Python is called at samples",
+            "give a period",
         )
 
 
@@ -258,7 +242,5 @@ def _same(name: str, what: str, values: Values, shapes: Mapping[str, object]) ->
         shape = values[key].shape if key in values else "nothing"
         if key not in shapes or shape != shapes[key]:
             raise DescriptionError(
-                Problem(
-                    f"block '{name}': {what} '{key}'", f"{shape}", f"{shapes.get(key, 'not stated')}", "mend the block"
-                )
+                f"block '{name}': {what} '{key}'", f"{shape}", f"{shapes.get(key, 'not stated')}", "mend the block"
             )

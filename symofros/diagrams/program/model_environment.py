@@ -67,12 +67,10 @@ class Models:
             return replace(stated, system=friction_only(stated.system))
         if name not in self._setups:
             raise DescriptionError(
-                Problem(
-                    f"diagram '{self._diagram}': no model '{name}'",
-                    f"'{name}'",
-                    f"models: {', '.join(self._setups) or 'none'}",
-                    did_you_mean(name, self._setups) or "add the model",
-                )
+                f"diagram '{self._diagram}': no model '{name}'",
+                f"'{name}'",
+                f"models: {', '.join(self._setups) or 'none'}",
+                did_you_mean(name, self._setups) or "add the model",
             )
         return self._setups[name]
 
@@ -209,12 +207,10 @@ class Models:
     def _index(self, model: str, what: str, name: str, known: tuple[str, ...]) -> int:
         if name not in known:
             raise DescriptionError(
-                Problem(
-                    f"diagram '{self._diagram}': model '{model}' has no {what} '{name}'",
-                    f"'{name}'",
-                    f"known: {', '.join(known[:12]) or 'none'}",
-                    did_you_mean(name, known) or "see model.names",
-                )
+                f"diagram '{self._diagram}': model '{model}' has no {what} '{name}'",
+                f"'{name}'",
+                f"known: {', '.join(known[:12]) or 'none'}",
+                did_you_mean(name, known) or "see model.names",
             )
         return known.index(name)
 
@@ -285,7 +281,7 @@ class Models:
             remedy = "connect its input z; where it has none, add the model once more without these elements, or use"
             remedy += " ModelFunction with z"
             what = f"diagram '{self._diagram}': {function} of model '{model}' depends on states of forces"
-            raise DescriptionError(Problem(what, ", ".join(sorted(found)[:8]), rule, remedy))
+            raise DescriptionError(what, ", ".join(sorted(found)[:8]), rule, remedy)
 
     def formulas(self, g: Graph, model: str, formulas: Sequence[Any], reactions: bool, **groups: Tensor) -> Tensor:
         """Formulas over a model's names at a point of a graph (n).
@@ -342,12 +338,10 @@ class Models:
             if name not in given or given[name].size != size:
                 shape = given[name].shape if name in given else "nothing"
                 raise ShapeError(
-                    Problem(
-                        f"model '{model}': {name} of {program.functions[0].name}",
-                        f"{shape}",
-                        f"({size})",
-                        "give it that shape",
-                    )
+                    f"model '{model}': {name} of {program.functions[0].name}",
+                    f"{shape}",
+                    f"({size})",
+                    "give it that shape",
                 )
             replacement |= {program.graph.input(name, i): edge for i, edge in enumerate(given[name].flat)}
         own = {program.graph.input("par", i): g.input(parameter_group(model), i) for i in range(program.sizes["par"])}

@@ -79,14 +79,7 @@ def _events(piece: Piece) -> tuple[Event, ...]:
 def part_switching(
     pieces: Mapping[str, Piece], layout: Layout, part: Part, crossings: Sequence[Event]
 ) -> PartSwitching | None:
-    """The events of a part's mechanisms; None where they have none.
-
-    Args:
-        pieces: Blocks of the diagram.
-        layout: Layout of its vectors.
-        part: The part.
-        crossings: Crossings of all blocks.
-    """
+    """The events of a part's mechanisms; None where they have none."""
     owners = owners_of(pieces, part)
     if not owners:
         return None

@@ -11,7 +11,7 @@ from symofros.diagrams.program.lowered_block import INPUT, MEMORY, PARAMETER, ST
 from symofros.diagrams.program.model_environment import parameter_group
 from symofros.diagrams.tensor import Tensor
 from symofros.diagrams.wiring import Source, Wired
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 from symofros.expr import Edge, Graph, Slot, copy_into, needed_nodes
 
 AT = ("q", "v", "u", "t")
@@ -149,12 +149,10 @@ class Point:
         layout = self._layout
         if group in ("a", "lam") and not self._after:
             raise DescriptionError(
-                Problem(
-                    f"block '{name}': accelerations or constraint forces are needed between samples",
-                    f"'{group}'",
-                    "under constraints they are known once the equations of the instant are solved",
-                    "take them through a sampled block (a hold with a period)",
-                )
+                f"block '{name}': accelerations or constraint forces are needed between samples",
+                f"'{group}'",
+                "under constraints they are known once the equations of the instant are solved",
+                "take them through a sampled block (a hold with a period)",
             )
         places = {"q": (layout.q, self._q), "v": (layout.v, self._v), "a": (layout.v, self._v)}
         of, first = places.get(group, (layout.lam, self._lam))

@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.diagrams.run.recording import Cost
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.simulation.results.plots import figure_class
 
 
@@ -54,12 +54,7 @@ def jitter_of(cost: Cost) -> Jitter:
     late = cost.late
     if not late.size:
         raise SymofrosError(
-            Problem(
-                "jitter: no instants were timed",
-                "0",
-                "a run in real time times its instants",
-                "run with realtime=True",
-            )
+            "jitter: no instants were timed", "0", "a run in real time times its instants", "run with realtime=True"
         )
     missed = int(np.sum(late >= cost.spacing))
     low, middle, high, worst = (float(value) for value in np.quantile(late, [0.0, 0.5, 0.999, 1.0]))

@@ -15,7 +15,7 @@ from symofros.diagrams.inlets import VALUE, Inlet
 from symofros.diagrams.program.compiled import CompiledDiagram
 from symofros.diagrams.run.starts import Start
 from symofros.diagrams.run.values import parameter_place, parameter_values
-from symofros.errors import ParameterError, Problem, ShapeError, SymofrosError
+from symofros.errors import ParameterError, ShapeError, SymofrosError
 from symofros.simulation.inputs import Signal
 
 
@@ -61,7 +61,7 @@ class Varied:
         if np.prod(own) == 1:
             return cls(array.reshape((*array.shape, *own)), own)
         shape, remedy = ", ".join(("...", *map(str, own))), "give a value a run, or one for all"
-        raise ShapeError(Problem(f"run_batch: {what} does not fit", str(array.shape), f"of shape ({shape})", remedy))
+        raise ShapeError(f"run_batch: {what} does not fit", str(array.shape), f"of shape ({shape})", remedy)
 
     @property
     def batch(self) -> Shape:
@@ -149,12 +149,10 @@ class Members:
             return np.broadcast_shapes(*(values.batch for values in given.values()))
         except ValueError:
             raise ShapeError(
-                Problem(
-                    "run_batch: batch dimensions do not broadcast",
-                    ", ".join(f"{name} {values.batch}" for name, values in given.items() if values.batch),
-                    "all dimensions before those of a value itself broadcast together",
-                    "give each the same leading dimensions, or none",
-                )
+                "run_batch: batch dimensions do not broadcast",
+                ", ".join(f"{name} {values.batch}" for name, values in given.items() if values.batch),
+                "all dimensions before those of a value itself broadcast together",
+                "give each the same leading dimensions, or none",
             ) from None
 
     @cached_property

@@ -16,7 +16,7 @@ from symofros.diagrams.program.point import AFTER
 from symofros.diagrams.run.parts import place_parts
 from symofros.diagrams.run.starts import Start
 from symofros.diagrams.run.values import parameter_values, part_settings
-from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
+from symofros.errors import ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.manifold import retract
 from symofros.simulation.analysis.sliding import contact_dynamics
 from symofros.simulation.inputs import held_sample
@@ -67,11 +67,11 @@ class OperatingPoint:
             if name not in inlets:
                 what, rule = f"state_space: no inlet '{name}'", f"inlets: {', '.join(inlets) or 'none'}"
                 remedy = did_you_mean(name, inlets) or "leave it out"
-                raise UnknownNameError(Problem(what, f"'{name}'", rule, remedy))
+                raise UnknownNameError(what, f"'{name}'", rule, remedy)
             array, place = numeric(f"inlet '{name}'", value), inlets[name]
             if array.shape not in ((), place.shape):
                 what, rule = f"state_space: inlet '{name}' does not fit", f"numbers of shape {place.shape}"
-                raise ShapeError(Problem(what, str(array.shape), rule, "give it that shape"))
+                raise ShapeError(what, str(array.shape), rule, "give it that shape")
             begin.u[place.slice] = array.reshape(-1)
         options = SimulationOptions(t0=t)
         placed = place_parts(compiled, lambda model: part_settings(options, model, t + 1.0), par, begin)

@@ -14,7 +14,7 @@ from symofros.diagrams.program.compiled import CompiledDiagram, Resolved
 from symofros.diagrams.program.layout import Part
 from symofros.diagrams.run.examination.faults import fault_at
 from symofros.diagrams.run.starts import Start, changes_of_driven, close_loops, stated_entries
-from symofros.errors import AssemblyError, Problem, SymofrosError
+from symofros.errors import AssemblyError, SymofrosError
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.beam_theory import refuse_beyond
 from symofros.simulation.inputs import InputPlan
@@ -46,12 +46,6 @@ def place_parts(
 ) -> list[Placed]:
     """A stepper for each part.
 
-    Args:
-        compiled: The diagram.
-        settings_of: Settings of a part's steps, by its model.
-        par: Run-time parameters.
-        begin: State of the diagram that they begin with.
-
     Raises:
         SymofrosError: The method is implicit.
         AssemblyError: A first state closes no loop.
@@ -63,12 +57,10 @@ def place_parts(
         settings = settings_of(model)
         if not settings.method.family.batched:
             raise SymofrosError(
-                Problem(
-                    f"diagram '{name}': method '{settings.method.name}'",
-                    "an implicit method",
-                    "diagrams step by explicit methods",
-                    "use rk4, dopri5 or dop853",
-                )
+                f"diagram '{name}': method '{settings.method.name}'",
+                "an implicit method",
+                "diagrams step by explicit methods",
+                "use rk4, dopri5 or dop853",
             )
         inputs, switching = InputPlan(begin.u.copy(), list(layout.signals)), resolved.switching(part)
         events: Sequence[Event] = resolved.crossings if switching is None else switching.events
@@ -112,7 +104,7 @@ def start_parts(parts: list[Placed], resolved: Resolved, par: Array, begin: Star
                 what, remedy = ENDS[status].reason, ENDS[status].advice
             found = found or ", ".join(stepper.model.names.v[:6])
             rule = "the start is one that moves"
-            raise SymofrosError(Problem(f"diagram '{resolved.wired.name}' at its start: {what}", found, rule, remedy))
+            raise SymofrosError(f"diagram '{resolved.wired.name}' at its start: {what}", found, rule, remedy)
 
 
 def _closed(resolved: Resolved, part: Part, stepper: Stepper, begin: Start, par: Array) -> Placed:
@@ -136,12 +128,10 @@ def _closed(resolved: Resolved, part: Part, stepper: Stepper, begin: Start, par:
     q, v, residual = _projected(stepper.model, part, near, par)
     if not residual <= CLOSED:
         raise AssemblyError(
-            Problem(
-                f"diagram '{resolved.wired.name}': the first state does not close the loops",
-                f"|phi| = {residual:.3g}",
-                f"at most {CLOSED:g} after projection",
-                "start nearer: see sf.assemble",
-            )
+            f"diagram '{resolved.wired.name}': the first state does not close the loops",
+            f"|phi| = {residual:.3g}",
+            f"at most {CLOSED:g} after projection",
+            "start nearer: see sf.assemble",
         )
     on[0][part.q], on[1][part.v] = q, v
     return Placed(stepper, q, v, notes + changes_of_driven(resolved, part, begin, Start(begin.t, *on, begin.u)))

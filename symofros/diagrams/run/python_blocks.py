@@ -14,7 +14,7 @@ from symofros.diagrams.external_block import ExternalBlock, Running
 from symofros.diagrams.program.compiled import Resolved, fuser
 from symofros.diagrams.program.layout import Place
 from symofros.diagrams.wiring import Wired, surroundings
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.simulation.user_functions import named_function
 
 # Calls whose outputs are kept for the parts of a run that are made once more.
@@ -107,12 +107,10 @@ def _output(name: str, outputs: Mapping[str, object], port: str, shape: tuple[in
     value = np.asarray(outputs.get(port, np.nan), dtype=np.float64)
     if port not in outputs or value.shape != shape:
         raise SymofrosError(
-            Problem(
-                f"block '{name}': output '{port}' does not fit",
-                f"{value.shape}" if port in outputs else "nothing",
-                f"{shape}",
-                "return it so from call",
-            )
+            f"block '{name}': output '{port}' does not fit",
+            f"{value.shape}" if port in outputs else "nothing",
+            f"{shape}",
+            "return it so from call",
         )
     return value
 

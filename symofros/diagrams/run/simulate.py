@@ -117,14 +117,7 @@ def run_planned(
 
 
 def examined_run(task: PlannedRun, ended: Ended, given: Given, kept: Mapping[str, Mapping[str, Array]]) -> DiagramRun:
-    """A run from the first state that has ended, its outcome examined.
-
-    Args:
-        task: What was run.
-        ended: The run.
-        given: What external blocks gave.
-        kept: What blocks stored.
-    """
+    """A run from the first state that has ended, its outcome examined."""
     resolved, bendings = task.compiled.resolved, ended.bendings
     try:
         outcome = _judged(task, ended, given, bendings)

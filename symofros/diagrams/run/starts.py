@@ -11,7 +11,7 @@ import numpy as np
 from symofros.base.arrays import Array, numeric
 from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Part
-from symofros.errors import Problem, ShapeError
+from symofros.errors import ShapeError
 from symofros.runtime.manifold import at_unit_length
 from symofros.simulation.analysis.kinematics.starts import changes, closed_start, stated_names
 from symofros.simulation.stepping.met import Met
@@ -59,7 +59,7 @@ class Start:
             array = numeric(f"start '{name}'", value)
             if array.shape not in (place.shape, ()):
                 what, found = f"diagram: start '{name}' does not fit", str(array.shape)
-                raise ShapeError(Problem(what, found, f"of shape {place.shape}", "give it that shape"))
+                raise ShapeError(what, found, f"of shape {place.shape}", "give it that shape")
             vectors[group][place.slice] = array.reshape(-1)
             given += (
                 layout.q_names[place.slice] if group == "q" else layout.v_names[place.slice] if group == "v" else ()

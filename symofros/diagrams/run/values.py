@@ -58,12 +58,10 @@ def parameter_values(resolved: Resolved, given: Mapping[str, Any]) -> Array:
         array, place = real_array(value), parameter_place(resolved, name)
         if array is None or array.shape not in (place.shape, ()) or not np.all(np.isfinite(array)):
             raise SymofrosError(
-                Problem(
-                    f"diagram: parameter '{name}' does not fit",
-                    f"{value!r:.80}",
-                    f"finite, of shape {place.shape}",
-                    "give it that shape",
-                )
+                f"diagram: parameter '{name}' does not fit",
+                f"{value!r:.80}",
+                f"finite, of shape {place.shape}",
+                "give it that shape",
             )
         par[place.slice] = np.broadcast_to(array, place.shape).reshape(-1)
     _refuse_values(resolved, {key: place for key, place in layout.parameters.items() if ".".join(key) in given}, par)
@@ -87,7 +85,7 @@ def parameter_place(resolved: Resolved, name: str) -> Place:
         return Place(settable.index(name), ())
     known = list(dict.fromkeys([*fields, *settable]))
     what, rule = f"diagram: no run-time parameter '{name}'", f"known: {', '.join(known[:12])}"
-    raise UnknownNameError(Problem(what, f"'{name}'", rule, did_you_mean(name, known)))
+    raise UnknownNameError(what, f"'{name}'", rule, did_you_mean(name, known))
 
 
 def _refuse_values(resolved: Resolved, given: Mapping[tuple[str, str], Place], par: Array) -> None:
@@ -118,10 +116,10 @@ def record_interval(record: Any, t0: float, t_end: float, dt: float | None) -> f
         SymofrosError: It is no positive number, or there is no span of time.
     """
     if not (math.isfinite(t0) and math.isfinite(t_end) and t_end > t0):
-        raise SymofrosError(Problem("diagram: no span of time", f"from {t0} to {t_end}", "t_end after t0", "set t_end"))
+        raise SymofrosError("diagram: no span of time", f"from {t0} to {t_end}", "t_end after t0", "set t_end")
     if record is None:
         step = dt or 1e-3
         return step * max(1, math.ceil((t_end - t0) / step / _RECORDS))
     if np.ndim(record) or not (math.isfinite(record) and record > 0.0):
-        raise SymofrosError(Problem("diagram: no interval of recording", f"{record}", "above zero [s]", "leave it out"))
+        raise SymofrosError("diagram: no interval of recording", f"{record}", "above zero [s]", "leave it out")
     return float(record)

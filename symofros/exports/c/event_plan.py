@@ -9,7 +9,7 @@ from typing import Any
 from symofros.base.c_text import doubles, integers, strings
 from symofros.base.events import Event
 from symofros.compiler import Compilation
-from symofros.errors import ExportError, Problem
+from symofros.errors import ExportError
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord, SwitchRecord
 from symofros.simulation.actions import StatedActions, places_of, plan_actions
@@ -77,7 +77,7 @@ def _refuse(events: Sequence[Event], target: str) -> None:
     if events:
         what, rule = f"export: '{target}' looks for no events", f"events are of {', '.join(TARGETS)}"
         remedy = "leave `events` out, and look for them in the host; or take one of these targets"
-        raise ExportError(Problem(what, ", ".join(event.name for event in events), rule, remedy))
+        raise ExportError(what, ", ".join(event.name for event in events), rule, remedy)
 
 
 def refuse_ends(events: Iterable[Event]) -> None:
@@ -93,7 +93,7 @@ def refuse_ends(events: Iterable[Event]) -> None:
             "callers decide when the motion of an FMU or a MEX function ends",
         )
         remedy = "an action, such as one that locks what moves; or events={'NAME': None}, which leaves it out"
-        raise ExportError(Problem(what, "terminal=True", rule, remedy))
+        raise ExportError(what, "terminal=True", rule, remedy)
 
 
 def planned(

@@ -14,7 +14,7 @@ from symofros.base.names import TIME, identifier
 from symofros.base.options import Options
 from symofros.compiler import GENERATOR, Compilation
 from symofros.description import Parameter, System, Value, as_vector
-from symofros.errors import ExportError, Problem
+from symofros.errors import ExportError
 from symofros.exports.equations import formulas
 from symofros.exports.equations.harmonics import TooManyTermsError
 from symofros.exports.equations.reading import Reader
@@ -198,13 +198,13 @@ class ReadableEquations:
         what = f"the equations of '{self.system.name}' are not written out"
         if total > LIMIT:
             rule = f"at most {LIMIT} operations: larger ones fill pages that nobody reads"
-            raise ExportError(Problem(what, f"{total} operations", rule, _REMEDY))
+            raise ExportError(what, f"{total} operations", rule, _REMEDY)
         reader = Reader(self._compilation.program.graph, _PRODUCTS)
         try:
             sums = {name: reader.sums(edges) for name, edges in outputs.items()}
         except TooManyTermsError:
             rule = f"products of two sums take at most {_PRODUCTS} products of terms"
-            raise ExportError(Problem(what, f"{total} operations, whose sums expand further", rule, _REMEDY)) from None
+            raise ExportError(what, f"{total} operations, whose sums expand further", rule, _REMEDY) from None
         grouped = self.symbols | {"par": self.symbols["par"] + self.symbols.get("gravity", ())}
         slots = {Slot(group, i): symbol for group, each in grouped.items() for i, symbol in enumerate(each)}
         writer = formulas.Writer(reader.atoms, slots)

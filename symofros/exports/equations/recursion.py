@@ -34,13 +34,7 @@ M_{jk} &= V_j \cdot f + w_j \cdot n \text{ with } f = m V_k + w_k \times S, \; n
 
 
 def recursion_text(tree: SpanningTree, symbols: Mapping[str, Any], names: Mapping[Any, str]) -> str:
-    """LaTeX of the recursive equations of a tree.
-
-    Args:
-        tree: Checked and numbered.
-        symbols: Symbol of each name in formulas.
-        names: LaTeX of symbols.
-    """
+    """LaTeX of the recursive equations of a tree."""
     writer = _Writer(symbols, names)
     gravity = f"g = {writer.vector(tree.system.gravity)}"
     links = [writer.link(i, link, tree.links) for i, link in enumerate(tree.links)]

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from symofros.base.arrays import Array
 from symofros.base.rotations import matrix_product, skew
 from symofros.description import PRE_STRAINS, STATION, WORLD, Beam, Body, Damper, Inertia, Joint, RigidBody, System
-from symofros.errors import ExportError, Problem
+from symofros.errors import ExportError
 from symofros.exports.limits import listed
 from symofros.mechanics.topology import Numbers, coordinate_names, full_names, public_names
 
@@ -82,22 +82,18 @@ def rigid_links(system: System, form: Literal["URDF", "MJCF"] | None) -> tuple[l
     if beyond:
         listed = ", ".join(f"'{joint.name}' ({'prescribed' if joint.prescribed else joint.kind})" for joint in beyond)
         raise ExportError(
-            Problem(
-                f"system '{system.name}': joints that {form} can't hold",
-                listed,
-                "a file without formulas holds turns and slides, and joints made of them",
-                "export the model as an FMU, or replace these joints",
-            )
+            f"system '{system.name}': joints that {form} can't hold",
+            listed,
+            "a file without formulas holds turns and slides, and joints made of them",
+            "export the model as an FMU, or replace these joints",
         )
     curved = [body.name for body in system.beams if any(getattr(body, label) != 0.0 for label in PRE_STRAINS)]
     if curved:
         raise ExportError(
-            Problem(
-                f"system '{system.name}': rods that {form} can't hold",
-                ", ".join(curved),
-                "a beam becomes a straight rigid body; a rod with curvature or twist without stress is not straight",
-                "export the model as an FMU, or replace these rods by rigid bodies",
-            )
+            f"system '{system.name}': rods that {form} can't hold",
+            ", ".join(curved),
+            "a beam becomes a straight rigid body; a rod with curvature or twist without stress is not straight",
+            "export the model as an FMU, or replace these rods by rigid bodies",
         )
     bodies = system.bodies
     if all(body.joint is not None for body in bodies):

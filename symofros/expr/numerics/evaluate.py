@@ -13,14 +13,7 @@ from symofros.expr.program import Function, Program
 
 
 def needed_nodes(graph: Graph, edges: Sequence[Edge], given: Collection[int] = (), but: str = "") -> list[int]:
-    """Nodes to evaluate for some edges, operands first; inputs, numbers and given nodes are left out.
-
-    Args:
-        graph: The graph.
-        edges: Edges to evaluate.
-        given: Nodes whose values are available.
-        but: Operation whose nodes are left out, too.
-    """
+    """Nodes to evaluate for some edges, operands first; inputs, numbers and given nodes are left out."""
     op, args, nodes = graph.op, graph.args, []
     needed = {abs(edge) for edge in edges}
     marks = bytearray(len(args))

@@ -16,12 +16,7 @@ PACKED = 2.0
 
 
 def effort(program: Program, function: Function) -> float:
-    """Operations that one state takes: those on packs by their weight, those on equal limbs once.
-
-    Args:
-        program: Staged program.
-        function: Function of the program.
-    """
+    """Operations that one state takes: those on packs by their weight, those on equal limbs once."""
     graph, edges, given = program.graph, function.edges(), program.pre
     packs = PackPlan(graph, needed_nodes(graph, edges, given), given, edges)
     spared = LimbPlan(graph, packs.nodes, given, edges, program.limbs, packs).spared if program.limbs else 0

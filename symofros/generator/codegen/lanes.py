@@ -79,12 +79,7 @@ def _rows(c_name: str, function: Function, lanes: LaneOptions) -> list[str]:
 
 
 def one_state(c_name: str, function: Function) -> str:
-    """The C function that evaluates one state, by vectors: a batch of one.
-
-    Args:
-        c_name: Its name.
-        function: Function that it evaluates.
-    """
+    """The C function that evaluates one state, by vectors: a batch of one."""
     signature = "(size_t n, const double *const *in, const size_t *in_stride, double *const *out, double *work)"
     return "\n".join(
         [
@@ -98,15 +93,7 @@ def one_state(c_name: str, function: Function) -> str:
 
 
 def strided(c_name: str, program: Program, function: Function, work: int, lanes: LaneOptions) -> str:
-    """What the C file says of a function on vectors, and its batch in any layout unless lanes are rows.
-
-    Args:
-        c_name: Name of the C function that evaluates one state.
-        program: Program of the function.
-        function: Function that it evaluates.
-        work: Scratch of one vector.
-        lanes: Options of the code by vectors.
-    """
+    """What the C file says of a function on vectors, and its batch in any layout unless lanes are rows."""
     inputs = [len(program.init), *(program.sizes[name] for name in function.inputs)]
     outputs = [prod(shape) for _, shape in function.returns]
     zeros = [(k, *run) for k, output in enumerate(function.outputs) for run in _runs(output.edges)]

@@ -250,11 +250,7 @@ class _Tables:
         return self._numbers.setdefault(values, f"number[{len(self._numbers)}][i]")
 
     def lines(self, count: int) -> list[str]:
-        """The lines that define the tables.
-
-        Args:
-            count: Number of iterations.
-        """
+        """The lines that define the tables."""
         lines = []
         tables: tuple[tuple[str, str, Sequence[tuple[float, ...]]], ...] = (
             ("at", "int", [*self._indices]),

@@ -295,12 +295,7 @@ def _one_function(
 
 
 def _text_of_one_state(packed: FunctionWriter, without: FunctionWriter) -> FunctionText:
-    """A function whose packs hardly pay: without them, or with them where the processor's vectors have up to 256 bits.
-
-    Args:
-        packed: Writer of the function with packs.
-        without: Writer of the function without packs.
-    """
+    """A function whose packs hardly pay: with them only where the processor's vectors have up to 256 bits."""
     plain = without.text()
     vectors, _ = packed.choices
     if vectors.method == "scalars":

@@ -70,11 +70,7 @@ class Vector:
         return f"sym_lane({vector_name(self.key)}, {lane})"
 
     def lines(self, text: Callable[[Edge], str]) -> list[str]:
-        """The lines that define it.
-
-        Args:
-            text: Text of a scalar edge.
-        """
+        """The lines that define it."""
         name = vector_name(self.key)
         if self.terms:
             start = _sum(self.terms, text)
@@ -255,12 +251,7 @@ def _sum(terms: Sequence[tuple[Edge, Vector]], text: Callable[[Edge], str]) -> s
 
 
 def runs_of_lanes(vector: Vector, stores: Sequence[Store]) -> tuple[list[str], list[Store]]:
-    """Lines that store neighbouring lanes into neighbouring entries, and the stores that remain.
-
-    Args:
-        vector: Vector to be stored.
-        stores: Stores of its lanes.
-    """
+    """Lines that store neighbouring lanes into neighbouring entries, and the stores that remain."""
     lines: list[str] = []
     remaining: list[Store] = []
     run: list[_LaneStore] = []

@@ -24,12 +24,7 @@ WIDTHS = (1, 2, 4, WIDEST)
 
 
 def block_lines(writer: StatementWriter, statement: Statement) -> list[str]:
-    """The lines of a block: its angles in a vector, the call, the variables.
-
-    Args:
-        writer: Writer of the function.
-        statement: Statement with angles.
-    """
+    """The lines of a block: its angles in a vector, the call, the variables."""
     if writer.lanes:
         return _lane_lines(writer, statement)
     first, angles = statement.nodes[0], statement.angles

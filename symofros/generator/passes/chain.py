@@ -29,9 +29,6 @@ def chain_sums(program: Program) -> Program:
     a sum that another function reads is no reason to keep it apart. Terms stand in the order of their creation, so the
     last bits depend on what was formed before.
 
-    Args:
-        program: Staged or not.
-
     Returns:
         The program over a graph of its own, which holds what the functions need; results differ by rounding.
     """

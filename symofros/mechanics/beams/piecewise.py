@@ -259,10 +259,6 @@ XI = polynomial(0, 1)
 def fitted(function: Callable[[Extended], Extended], pieces: int) -> Piecewise:
     """A smooth function by interpolation at Chebyshev points on equal intervals, in extended precision.
 
-    Args:
-        function: Function of the station, of and to extended numbers.
-        pieces: Number of intervals.
-
     Returns:
         The interpolant with coefficients rounded to doubles; what is below the interpolation's own rounding is zero,
         so that a polynomial comes back as one of the same degree.

@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Sequence
 from dataclasses import dataclass
 
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.substitute import substitute
 from symofros.expr.vector import Vec3
@@ -53,12 +53,10 @@ def central_mass(kinematics: TreeKinematics) -> CentralMass:
             moment[link.parent] = moment[link.parent] + in_parent
     if total == ZERO:
         raise DescriptionError(
-            Problem(
-                f"system '{kinematics.tree.system.name}': no mass centre",
-                "no body that a joint carries has a mass",
-                "the mass centre divides by the mass of all that joints carry",
-                "state masses beside the moments of inertia",
-            )
+            f"system '{kinematics.tree.system.name}': no mass centre",
+            "no body that a joint carries has a mass",
+            "the mass centre divides by the mass of all that joints carry",
+            "state masses beside the moments of inertia",
         )
     return CentralMass(total, Vec3(g, *(g.div(x, total) for x in total_moment)))
 

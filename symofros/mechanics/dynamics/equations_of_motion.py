@@ -9,7 +9,7 @@ from dataclasses import replace
 from functools import cached_property
 from typing import Self
 
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 from symofros.expr.edges import ZERO, Edge
 from symofros.expr.factors import Factors, SingularMatrixError
 from symofros.expr.graph import Graph
@@ -144,12 +144,10 @@ class EquationsOfMotion:
         """
         if self.route_figures["distant_rotors"]:
             raise DescriptionError(
-                Problem(
-                    f"system '{self.tree.system.name}': forward dynamics by articulated bodies",
-                    "a rotor that is borne by another body than the parent of the joint that drives it",
-                    "a joint's speeds move its link, and rotors on its parent or on the base, alone",
-                    "choose Options(forward_dynamics='factors'), or 'auto'",
-                )
+                f"system '{self.tree.system.name}': forward dynamics by articulated bodies",
+                "a rotor that is borne by another body than the parent of the joint that drives it",
+                "a joint's speeds move its link, and rotors on its parent or on the base, alone",
+                "choose Options(forward_dynamics='factors'), or 'auto'",
             )
         with self._refusing_singular():
             return articulated_acceleration(self.kinematics, self._bare_inertias, self.rotors, self.gravity, self.Q)
@@ -182,13 +180,10 @@ class EquationsOfMotion:
             self.refuse_massless()
             name = self.tree.coordinates.v[error.row]
             raise DescriptionError(
-                Problem(
-                    f"system '{self.tree.system.name}': speed '{name}' moves nothing that those after it do not"
-                    " move alike",
-                    "M is singular in every state",
-                    f"{_DIVIDES} alone",
-                    "give the bodies between mass, turn one of the axes, or bind it by a constraint",
-                )
+                f"system '{self.tree.system.name}': speed '{name}' moves nothing that those after it do not move alike",
+                "M is singular in every state",
+                f"{_DIVIDES} alone",
+                "give the bodies between mass, turn one of the axes, or bind it by a constraint",
             ) from None
 
     def refuse_massless(self) -> None:
@@ -196,12 +191,10 @@ class EquationsOfMotion:
         for k, name in enumerate(self.tree.coordinates.v):
             if self.M[k][k] == ZERO:
                 raise DescriptionError(
-                    Problem(
-                        f"system '{self.tree.system.name}': speed '{name}' moves no mass",
-                        "its row of M is zero",
-                        _DIVIDES,
-                        f"give it an inertia, or bind it by a constraint{OTHER_FUNCTIONS}",
-                    )
+                    f"system '{self.tree.system.name}': speed '{name}' moves no mass",
+                    "its row of M is zero",
+                    _DIVIDES,
+                    f"give it an inertia, or bind it by a constraint{OTHER_FUNCTIONS}",
                 )
 
     @cached_property

@@ -16,7 +16,7 @@ from collections.abc import Iterable, Sequence
 
 from symofros.description.constraints import acts_on_bodies
 from symofros.description.values import Value, symbols
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 from symofros.expr.derivative import directional
 from symofros.expr.edges import ONE, Edge
 from symofros.expr.program import Function, Output, Program
@@ -106,12 +106,10 @@ def _rate(kinematics: TreeKinematics, value: Value, order: int) -> Edge:
     moving = {name for name, slot in (*names.symbols.items(), *names.keys.items()) if slot.group in ("q", "v", "u")}
     if order and (used := sorted(symbols(value) & moving)):
         raise DescriptionError(
-            Problem(
-                f"system '{kinematics.tree.system.name}': a motion that depends on '{used[0]}'",
-                f"'{value}'",
-                "the rates of a prescribed motion are found for formulas of t and parameters only",
-                "give its speeds and their rates as well",
-            )
+            f"system '{kinematics.tree.system.name}': a motion that depends on '{used[0]}'",
+            f"'{value}'",
+            "the rates of a prescribed motion are found for formulas of t and parameters only",
+            "give its speeds and their rates as well",
         )
     edge = kinematics.lowering.value(value)
     for _ in range(order):

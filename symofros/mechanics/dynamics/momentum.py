@@ -95,14 +95,7 @@ def _three(kinematics: TreeKinematics, edges: Sequence[Edge]) -> Vec3:
 def coriolis_matrix(
     kinematics: TreeKinematics, inertias: list[LinkInertia], rotors: list[MovingRotor], M: Matrix
 ) -> Matrix:
-    """C(q, v) (nv x nv) of the speeds v, prescribed motions at rest (55).
-
-    Args:
-        kinematics: Kinematics of the tree.
-        inertias: Inertia of each link.
-        rotors: Rotors that spin in links.
-        M: Mass matrix.
-    """
+    """C(q, v) (nv x nv) of the speeds v, prescribed motions at rest (55)."""
     g, nv = kinematics.g, kinematics.nv
     h = inertia_forces(kinematics, inertias, rotors, [ZERO] * nv, Vec3(g))
     prescribed = [link for link in kinematics.links if link.rates is not None]

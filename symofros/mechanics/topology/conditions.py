@@ -126,12 +126,7 @@ class Conditions:
         self._first = np.cumsum([0, *(len(condition.margins) for condition in self.conditions)])[:-1]
 
     def violated(self, values: Mapping[str, Array | float], states: int = 1) -> npt.NDArray[np.bool_]:
-        """Where a margin lacks its sign, or is not finite: (conditions, states).
-
-        Args:
-            values: Number of each parameter, or an array of one for each state.
-            states: Number of states.
-        """
+        """Where a margin lacks its sign, or is not finite: (conditions, states)."""
         if not self.conditions:
             return np.zeros((0, states), dtype=bool)
         margins = np.empty((len(self._any), states))

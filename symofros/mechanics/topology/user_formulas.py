@@ -87,12 +87,10 @@ def _stated(what: str, formula: Any, known: frozenset[str], both: frozenset[str]
     written = value.written or str(value) if isinstance(value, Expression) else ""
     for name in sorted(symbols(value) - known):
         raise UnknownNameError(
-            Problem(
-                f"{what}: unknown symbol '{name}'",
-                f"'{written}'",
-                "a formula uses coordinates, speeds (d and the coordinate's name), inputs, parameters and t",
-                unknown_symbol_remedy(name, written, known) or "see model.names",
-            )
+            f"{what}: unknown symbol '{name}'",
+            f"'{written}'",
+            "a formula uses coordinates, speeds (d and the coordinate's name), inputs, parameters and t",
+            unknown_symbol_remedy(name, written, known) or "see model.names",
         )
     for problem in meaning_problems(what, value, known, both):
         raise DescriptionError(problem)

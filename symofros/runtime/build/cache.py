@@ -17,7 +17,7 @@ from functools import cache
 from pathlib import Path
 
 from symofros.base.stored import NO_ROOM, write_atomically
-from symofros.errors import CompileError, Problem
+from symofros.errors import CompileError
 from symofros.runtime.build.cache_size import keep_within_limit, note_use
 
 # What compilations and writings that were killed leave behind; nothing else in the folder is ever removed.
@@ -63,12 +63,10 @@ def _others_write(status: os.stat_result) -> bool:
 
 def _refused(folder: Path, state: str) -> CompileError:
     return CompileError(
-        Problem(
-            f"the cache folder '{folder}' can't be trusted",
-            state,
-            "compiled models are loaded from a folder that no other user owns or can write to",
-            _REMEDY,
-        )
+        f"the cache folder '{folder}' can't be trusted",
+        state,
+        "compiled models are loaded from a folder that no other user owns or can write to",
+        _REMEDY,
     )
 
 
@@ -92,7 +90,7 @@ def unusable(folder: Path, error: OSError) -> CompileError:
     rule, remedy = "compiled models are kept in a folder that can be written", _REMEDY
     if error.errno in NO_ROOM:
         rule, remedy = "there is room for compiled models", f"make room (symofros cache --clear), or {_REMEDY}"
-    return CompileError(Problem(f"the cache folder can't be used: {error}", str(folder), rule, remedy))
+    return CompileError(f"the cache folder can't be used: {error}", str(folder), rule, remedy)
 
 
 @cache

@@ -11,7 +11,7 @@ from functools import cache
 from pathlib import Path
 from typing import NamedTuple
 
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 
 # Names of the folder's own files, a compiled model each with all of its suffixes; no other file is ever removed.
 _OWN = re.compile(r"(timing-)?[0-9a-f]{32}\.(so|dylib|dll|pyd|py|c|digest|known|fastest|json)")
@@ -110,12 +110,10 @@ def limit() -> float:
         megabytes = -1.0
     if not megabytes >= 0.0:
         raise SymofrosError(
-            Problem(
-                f"{LIMIT_VARIABLE} is not a size",
-                repr(stated)[:80],
-                "it is the number of megabytes that compiled models may take, 0 for no limit",
-                f"unset it for {DEFAULT_LIMIT:g}",
-            )
+            f"{LIMIT_VARIABLE} is not a size",
+            repr(stated)[:80],
+            "it is the number of megabytes that compiled models may take, 0 for no limit",
+            f"unset it for {DEFAULT_LIMIT:g}",
         )
     return megabytes * _MEGABYTE or float("inf")
 

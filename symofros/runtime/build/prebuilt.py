@@ -37,10 +37,6 @@ def prebuilt_library(source: str) -> Path | None:
 def machine_library(source: str, flags: Sequence[str]) -> Path:
     """The library of a hand-written C text: compiled at its first use on a machine, or the one of the wheel.
 
-    Args:
-        source: The text.
-        flags: Flags of the compiler of this machine.
-
     Raises:
         CompileError: There is neither a compiler nor a library that came with the package.
     """

@@ -124,7 +124,7 @@ def _words(wanted: str, source: str, remedy: str) -> tuple[str, ...]:
         return tuple(shlex.split(wanted))
     except ValueError as error:
         rule = "its words are separated as in a shell"
-        raise CompileError(Problem(f"{source} can't be read: {error}", repr(wanted), rule, remedy)) from error
+        raise CompileError(f"{source} can't be read: {error}", repr(wanted), rule, remedy) from error
 
 
 def _command(wanted: str, source: str) -> tuple[str, ...]:
@@ -136,12 +136,10 @@ def _command(wanted: str, source: str) -> tuple[str, ...]:
     remedy = "name a C compiler, as in 'gcc' or 'clang -m64', or leave the choice to us"
     command = _words(wanted, source, remedy)
     if not command or not command[0]:
-        raise CompileError(Problem(f"{source} names no compiler", repr(wanted), "it begins with a program", remedy))
+        raise CompileError(f"{source} names no compiler", repr(wanted), "it begins with a program", remedy)
     if shutil.which(command[0]) is None:
         what = f"compiler '{wanted}' ({source}) was not found"
-        raise CompileError(
-            Problem(what, command[0], "it is a program on the path", "install it, or leave the choice to us")
-        )
+        raise CompileError(what, command[0], "it is a program on the path", "install it, or leave the choice to us")
     return command
 
 
@@ -162,10 +160,10 @@ def call_compiler(command: Sequence[str], output: str, folder: Path, remedy: str
     shown = "\n".join([" ".join(stated), *(f"    {line}" for line in said.splitlines()[:_SHOWN_LINES])])
     if status != 0:
         what = f"the C compiler failed with status {status}"
-        raise CompileError(Problem(what, shown, "the command ends with status 0", remedy))
+        raise CompileError(what, shown, "the command ends with status 0", remedy)
     if not (folder / output).is_file():
         what = "the C compiler ended well, but wrote nothing"
-        raise CompileError(Problem(what, shown, f"the command writes the file '{output}'", remedy))
+        raise CompileError(what, shown, f"the command writes the file '{output}'", remedy)
 
 
 def _toolchain(command: tuple[str, ...], is_fallback: bool = False) -> Toolchain:
@@ -198,9 +196,7 @@ def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int)
             )
         except OSError as error:
             rule, remedy = "a compiler is a program that this machine can run", "name another compiler, or install one"
-            raise CompileError(
-                Problem(f"compiler '{command[0]}' can't be started", str(error), rule, remedy)
-            ) from error
+            raise CompileError(f"compiler '{command[0]}' can't be started", str(error), rule, remedy) from error
         # Waiting with a time limit of its own would ask twenty times a second.
         too_late = Event()
 
@@ -222,12 +218,10 @@ def _run(command: Sequence[str], limit: float, folder: Path | None, errors: int)
             watch.cancel()
         if too_late.is_set():
             raise CompileError(
-                Problem(
-                    f"the C compiler did not end within {limit:g} s",
-                    " ".join(command),
-                    "a compiler answers within its time limit",
-                    "name another compiler, or generate fewer functions: Options(functions=…)",
-                )
+                f"the C compiler did not end within {limit:g} s",
+                " ".join(command),
+                "a compiler answers within its time limit",
+                "name another compiler, or generate fewer functions: Options(functions=…)",
             )
         said.seek(0)
         return status, said.read().decode(errors="replace")

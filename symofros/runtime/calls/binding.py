@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.native import HEADERS, amalgamated, native_text
 from symofros.runtime.build.prebuilt import machine_library
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS
@@ -198,10 +198,8 @@ def callable_from_c(kernel: Kernel) -> CompiledKernel:
     if isinstance(kernel, CompiledKernel):
         return kernel
     raise SymofrosError(
-        Problem(
-            f"function '{kernel.signature.name}': simulation steps in C",
-            "an interpreted model",
-            "the integrator calls compiled functions",
-            "compile with backend='c'",
-        )
+        f"function '{kernel.signature.name}': simulation steps in C",
+        "an interpreted model",
+        "the integrator calls compiled functions",
+        "compile with backend='c'",
     )

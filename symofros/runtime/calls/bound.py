@@ -12,7 +12,7 @@ import numpy as np
 
 from symofros.base.arguments import check_argument
 from symofros.base.arrays import share_memory
-from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
+from symofros.errors import ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array, BatchKernel, Kernel, Numbers, Signature
 from symofros.runtime.calls.layout import columns
 
@@ -51,7 +51,7 @@ class Bound:
         """Refuse to pickle or copy memory of C."""
         rule, remedy = "it is compiled code and memory of one process", "send the model, and bind the function there"
         functions = ", ".join(self.outputs)
-        raise SymofrosError(Problem("bound function: neither pickled nor copied", f"that of {functions}", rule, remedy))
+        raise SymofrosError("bound function: neither pickled nor copied", f"that of {functions}", rule, remedy)
 
     def __call__(self) -> None:
         """Compute the outputs from the current contents of the inputs."""
@@ -108,7 +108,7 @@ def receivers(
     for name, array in out.items():
         if name not in shapes:
             what, hint = f"{signature.name}: no output '{name}'", did_you_mean(name, shapes) or "leave it out"
-            raise UnknownNameError(Problem(what, ", ".join(shapes), "arrays receive outputs by these names", hint))
+            raise UnknownNameError(what, ", ".join(shapes), "arrays receive outputs by these names", hint)
         kind = isinstance(array, np.ndarray) and array.dtype == dtype and bool(array.flags.carray)
         if not kind or array.shape != shapes[name]:
             rule = f"a writeable C-contiguous {np.dtype(dtype)} array of shape {shapes[name]}"
@@ -209,12 +209,7 @@ def _shapes(signature: Signature, given: Mapping[str, Array]) -> dict[str, tuple
         if name not in shapes:
             what = f"{signature.name}: neither input nor output '{name}'"
             raise UnknownNameError(
-                Problem(
-                    what,
-                    ", ".join(shapes),
-                    "arrays are bound by these names",
-                    did_you_mean(name, shapes) or "leave it out",
-                )
+                what, ", ".join(shapes), "arrays are bound by these names", did_you_mean(name, shapes) or "leave it out"
             )
     return shapes
 
@@ -279,4 +274,4 @@ def _seen(array: object) -> str:
 def _misfit(signature: Signature, name: str, found: str, rule: str, remedy: str = "") -> ShapeError:
     what = f"{signature.name}: '{name}' can't be bound"
     remedy = remedy or "bind np.zeros(shape), or leave it out, and write into it"
-    return ShapeError(Problem(what, found, rule, remedy))
+    return ShapeError(what, found, rule, remedy)

@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.errors import CompileError, Problem
+from symofros.errors import CompileError
 from symofros.runtime.calls.declarations import interface, model_abi
 from symofros.runtime.calls.kernel import (
     DEFAULT_OPTIONS,
@@ -104,22 +104,18 @@ class CompiledUnit(ModelUnit):
             model = ffi.cast("const sym_model *(*)(void)", address)()
         except (OSError, AttributeError) as error:
             raise CompileError(
-                Problem(
-                    "the compiled model does not load",
-                    str(error),
-                    "a library in the cache folder is whole and of this machine",
-                    f"delete {path.name} from the cache folder",
-                )
+                "the compiled model does not load",
+                str(error),
+                "a library in the cache folder is whole and of this machine",
+                f"delete {path.name} from the cache folder",
             ) from error
         found_hash = ffi.string(model.hash).decode()
         if model.abi != model_abi() or found_hash != expected_hash:
             raise CompileError(
-                Problem(
-                    "the compiled model is another one",
-                    f"abi {model.abi}, hash {found_hash}",
-                    f"abi {model_abi()}, hash {expected_hash}",
-                    f"delete {path.name} from the cache folder",
-                )
+                "the compiled model is another one",
+                f"abi {model.abi}, hash {found_hash}",
+                f"abi {model_abi()}, hash {expected_hash}",
+                f"delete {path.name} from the cache folder",
             )
         super().__init__(model, path, in_lanes)
 

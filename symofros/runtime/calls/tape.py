@@ -13,7 +13,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.errors import CompileError, Problem
+from symofros.errors import CompileError
 from symofros.runtime.build.prebuilt import machine_library
 from symofros.runtime.build.toolchain import DEFAULT_FLAGS
 from symofros.runtime.calls.declarations import interface, model_abi
@@ -84,9 +84,6 @@ class TapeFunction:
 @cache
 def tape_machine(source: str) -> Any:
     """The library that interprets tapes, loaded.
-
-    Args:
-        source: Its C text.
 
     Raises:
         CompileError: There is no C compiler, and no library came with the package.
@@ -198,12 +195,10 @@ class TapeUnit(ModelUnit):
         if slot < 0:
             most = self._sizes["SYM_TAPE_SLOTS"]
             raise CompileError(
-                Problem(
-                    "there is no room for another function on tape",
-                    f"{most} functions and parts of functions are held",
-                    f"a process holds at most {most} at a time",
-                    "let go of models that are not used any more, or compile with backend='c'",
-                )
+                "there is no room for another function on tape",
+                f"{most} functions and parts of functions are held",
+                f"a process holds at most {most} at a time",
+                "let go of models that are not used any more, or compile with backend='c'",
             )
         self._slots.append(slot)
         return slot

@@ -16,7 +16,7 @@ from typing import Any, NoReturn
 import numpy as np
 import numpy.typing as npt
 
-from symofros.errors import Problem, ShapeError, SymofrosError
+from symofros.errors import ShapeError, SymofrosError
 from symofros.runtime.cuda.driver import DEFAULT_STREAM, Driver
 
 _CUDA, _FLOAT = 2, 2
@@ -68,7 +68,7 @@ class DeviceArray:
             SymofrosError: Always.
         """
         what, rule = "CUDA: an array of the device is not copied or pickled", "its memory has one owner"
-        raise SymofrosError(Problem(what, f"a DeviceArray of shape {self.shape}", rule, "take .numpy() of it"))
+        raise SymofrosError(what, f"a DeviceArray of shape {self.shape}", rule, "take .numpy() of it")
 
     @property
     def __cuda_array_interface__(self) -> dict[str, Any]:
@@ -224,21 +224,17 @@ def _compact(shape: tuple[int, ...]) -> tuple[int, ...]:
 
 def _unfit(name: str, found: str, wanted: np.dtype[Any]) -> ShapeError:
     return ShapeError(
-        Problem(
-            f"CUDA: {name} is not an array of {wanted} on the device",
-            found,
-            "arrays of the device are read in place, in the precision of the kernels",
-            "convert it before, or take kernels of the other precision: model.cuda('single')",
-        )
+        f"CUDA: {name} is not an array of {wanted} on the device",
+        found,
+        "arrays of the device are read in place, in the precision of the kernels",
+        "convert it before, or take kernels of the other precision: model.cuda('single')",
     )
 
 
 def _withheld(name: str, array: Any, error: Exception) -> ShapeError:
     return ShapeError(
-        Problem(
-            f"CUDA: {name} is not given by its library",
-            f"{type(array).__module__}.{type(array).__name__}: {error!s:.160}",
-            "arrays are read in place, without derivatives, while they exist",
-            "pass tensor.detach() of one that requires a gradient; symofros.interop.torch and .jax differentiate",
-        )
+        f"CUDA: {name} is not given by its library",
+        f"{type(array).__module__}.{type(array).__name__}: {error!s:.160}",
+        "arrays are read in place, without derivatives, while they exist",
+        "pass tensor.detach() of one that requires a gradient; symofros.interop.torch and .jax differentiate",
     )

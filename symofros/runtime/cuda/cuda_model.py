@@ -11,7 +11,7 @@ import numpy as np
 
 from symofros.base.arrays import real_array
 from symofros.base.functions import FRAME_FUNCTIONS, MODEL_FUNCTIONS
-from symofros.errors import Problem, ShapeError, SymofrosError, UnknownNameError, did_you_mean
+from symofros.errors import ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array, BatchOptions, Precision
 from symofros.runtime.cuda.arrays import DeviceArray, Placed, Strided, StridedSequence, lies_on_device, placed
 from symofros.runtime.cuda.device_code import BLOCK, DeviceCode
@@ -84,12 +84,10 @@ class CudaModel:
             SymofrosError: Always.
         """
         raise SymofrosError(
-            Problem(
-                f"model '{self.record.name}': what runs on a graphics processor can't be pickled",
-                "a CudaModel",
-                "kernels are loaded in one process",
-                "pickle the model, and call its cuda() in the other process",
-            )
+            f"model '{self.record.name}': what runs on a graphics processor can't be pickled",
+            "a CudaModel",
+            "kernels are loaded in one process",
+            "pickle the model, and call its cuda() in the other process",
         )
 
     def code(self, name: str, frame: str = "") -> DeviceCode:
@@ -105,12 +103,10 @@ class CudaModel:
             code = self._make(key, self.precision)
             if not code.kernels:
                 raise SymofrosError(
-                    Problem(
-                        f"model '{self.record.name}': {name} has no kernel",
-                        "a solver finishes it",
-                        "kernels are of functions that are formulas alone",
-                        "call it on the processor: it runs in the model's threads there",
-                    )
+                    f"model '{self.record.name}': {name} has no kernel",
+                    "a solver finishes it",
+                    "kernels are of functions that are formulas alone",
+                    "call it on the processor: it runs in the model's threads there",
                 )
             self._codes[key] = code
         return self._codes[key]
@@ -122,7 +118,7 @@ class CudaModel:
                 listed = ", ".join(filter(None, names[:12]))
                 what = f"model '{self.record.name}': no {what} '{given:.60}'"
                 remedy = did_you_mean(given, names) or "functions of frames are called with their frame, others without"
-                raise UnknownNameError(Problem(what, given[:60], listed, remedy))
+                raise UnknownNameError(what, given[:60], listed, remedy)
 
     def usage(self, name: str, frame: str = "", architecture: str = "") -> dict[str, KernelUsage]:
         """Registers and memory of the kernels of a function on an architecture ("sm_90"), this machine's by default.
@@ -255,7 +251,7 @@ class CudaModel:
         if method not in code.rollouts:
             known = tuple(code.rollouts)
             raise UnknownNameError(
-                Problem(f"CUDA: no rollouts by '{method}'", method, ", ".join(known), did_you_mean(method, known))
+                f"CUDA: no rollouts by '{method}'", method, ", ".join(known), did_you_mean(method, known)
             )
         every = steps if every is None else every
         _check_rollout(dt, steps, every)
@@ -321,14 +317,12 @@ class CudaModel:
         for group in inputs:
             if group not in sizes:
                 raise UnknownNameError(
-                    Problem(f"CUDA: no input '{group}'", group, ", ".join(sizes), did_you_mean(group, tuple(sizes)))
+                    f"CUDA: no input '{group}'", group, ", ".join(sizes), did_you_mean(group, tuple(sizes))
                 )
         arrays = {}
         for group, size in sizes.items():
             if group not in values:
-                raise ShapeError(
-                    Problem(f"CUDA: no {group}", ", ".join(inputs) or "nothing", ", ".join(sizes), "add it")
-                )
+                raise ShapeError(f"CUDA: no {group}", ", ".join(inputs) or "nothing", ", ".join(sizes), "add it")
             value = self._default(group, device) if group in "ut" and values[group] is None else values[group]
             array = placed(group, value, self._dtype, device, stream, captured)
             if group == "t" and value is not self._defaults.get(group):
@@ -374,15 +368,13 @@ def _check_rollout(dt: float, steps: int, every: int) -> None:
     for name, number in (("steps", steps), ("every", every)):
         if isinstance(number, bool) or not isinstance(number, int | np.integer):
             found = f"{name} = {number!r:.40}"
-            raise ShapeError(Problem(f"CUDA: {name} is no whole number", found, "steps are counted", "pass an int"))
+            raise ShapeError(f"CUDA: {name} is no whole number", found, "steps are counted", "pass an int")
     if steps < 1 or not 1 <= every <= steps or steps % every or not (np.isfinite(dt) and dt > 0.0):
         raise ShapeError(
-            Problem(
-                "CUDA: no such rollout",
-                f"{steps} steps of {dt}, a record every {every}",
-                "1 <= every <= steps, every divides steps so that the last record is the end, and a step is positive",
-                "leave every out for the last state alone",
-            )
+            "CUDA: no such rollout",
+            f"{steps} steps of {dt}, a record every {every}",
+            "1 <= every <= steps, every divides steps so that the last record is the end, and a step is positive",
+            "leave every out for the last state alone",
         )
 
 
@@ -394,6 +386,4 @@ def _batch(array: Placed, n: int) -> Strided:
 
 
 def _misfit(group: str, shape: tuple[int, ...], wanted: str) -> ShapeError:
-    return ShapeError(
-        Problem(f"CUDA: {group} has the wrong shape", str(shape), f"{group} has shape {wanted}", "reshape it")
-    )
+    return ShapeError(f"CUDA: {group} has the wrong shape", str(shape), f"{group} has shape {wanted}", "reshape it")

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from functools import cache
 from typing import Any
 
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 
 # Attributes of devices: the two numbers of the compute capability.
 _MAJOR, _MINOR = 75, 76
@@ -143,12 +143,10 @@ class Driver:
             text = ctypes.c_char_p()
             self._library.cuGetErrorString(status, ctypes.byref(text))
             raise SymofrosError(
-                Problem(
-                    f"CUDA: {name} failed",
-                    f"error {status}: {(text.value or b'unknown').decode(errors='replace')}",
-                    "the driver does what it is asked for",
-                    "less states at a time where memory ran out; else look at nvidia-smi",
-                )
+                f"CUDA: {name} failed",
+                f"error {status}: {(text.value or b'unknown').decode(errors='replace')}",
+                "the driver does what it is asked for",
+                "less states at a time where memory ran out; else look at nvidia-smi",
             )
 
 
@@ -167,6 +165,4 @@ def driver() -> Driver:
 
 
 def _absent(found: str) -> SymofrosError:
-    return SymofrosError(
-        Problem("CUDA: no graphics processor", found, "kernels run on a graphics processor of NVIDIA", _REMEDY)
-    )
+    return SymofrosError("CUDA: no graphics processor", found, "kernels run on a graphics processor of NVIDIA", _REMEDY)

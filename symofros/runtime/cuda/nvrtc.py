@@ -70,12 +70,10 @@ def _compiled(text: str, architecture: str, contract: bool, more: list[str]) -> 
     """A cubin, and the compiler's words."""
     if not _ARCHITECTURE.fullmatch(architecture):
         raise CompileError(
-            Problem(
-                f"CUDA: no architecture '{architecture:.40}'",
-                repr(architecture)[:60],
-                "an architecture is 'sm_' and a compute capability, such as 'sm_90'",
-                "leave it out where a graphics processor is at hand",
-            )
+            f"CUDA: no architecture '{architecture:.40}'",
+            repr(architecture)[:60],
+            "an architecture is 'sm_' and a compute capability, such as 'sm_90'",
+            "leave it out where a graphics processor is at hand",
         )
     nvrtc, program = _library(), ctypes.c_void_p()
     options = [f"-arch={architecture}", f"-fmad={str(contract).lower()}", "-std=c++17", *more]
@@ -148,10 +146,8 @@ def _load_builtins(folder: Path) -> None:
 
 def _failed(architecture: str, found: str) -> CompileError:
     return CompileError(
-        Problem(
-            f"CUDA: the kernels do not compile for {architecture}",
-            found,
-            "NVRTC compiles generated kernels for each architecture that it knows",
-            "choose another architecture, or install a newer NVRTC",
-        )
+        f"CUDA: the kernels do not compile for {architecture}",
+        found,
+        "NVRTC compiles generated kernels for each architecture that it knows",
+        "choose another architecture, or install a newer NVRTC",
     )

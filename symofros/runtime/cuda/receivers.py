@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import share_memory
-from symofros.errors import Problem, ShapeError, UnknownNameError, did_you_mean
+from symofros.errors import ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.cuda.arrays import DeviceArray, Placed, Strided, interface_of, lies_on_device, placed
 from symofros.runtime.cuda.driver import DEFAULT_STREAM, Driver
 
@@ -46,11 +46,11 @@ def receivers(
     """
     if not isinstance(out, Mapping):
         remedy = f"write out={{'{next(iter(shapes))}': array}}"
-        raise ShapeError(Problem("CUDA: out is no mapping", type(out).__name__, "out maps outputs to arrays", remedy))
+        raise ShapeError("CUDA: out is no mapping", type(out).__name__, "out maps outputs to arrays", remedy)
     for label, array in out.items():
         if label not in shapes:
             hint = did_you_mean(label, shapes) or "leave it out"
-            raise UnknownNameError(Problem(f"CUDA: {name} has no output '{label}'", label, ", ".join(shapes), hint))
+            raise UnknownNameError(f"CUDA: {name} has no output '{label}'", label, ", ".join(shapes), hint)
         _check_writeable(label, array)
     places = {label: placed(label, array, dtype, driver, stream, captured) for label, array in out.items()}
     batches = {label: strided_result(label, place, shapes[label]) for label, place in places.items()}
@@ -79,12 +79,10 @@ def strided_result(label: str, array: Placed, shape: Shape) -> Strided:
     )
     if array.shape != shape or not even:
         raise ShapeError(
-            Problem(
-                f"CUDA: {label} has the wrong shape",
-                str(array.shape),
-                f"{label} has shape {shape}, its entries at equal distances",
-                "reshape it",
-            )
+            f"CUDA: {label} has the wrong shape",
+            str(array.shape),
+            f"{label} has shape {shape}, its entries at equal distances",
+            "reshape it",
         )
     entry = array.strides[-1] if len(shape) > 1 and prod(shape[1:]) > 1 else 1
     return Strided(array.address, entry, array.strides[0])
@@ -95,17 +93,15 @@ def _check_writeable(label: str, array: Any) -> None:
         return
     if not lies_on_device(label, array):
         raise ShapeError(
-            Problem(
-                f"CUDA: {label} does not lie on the device",
-                f"an object of type {type(array).__name__}",
-                "results are written into arrays of the device",
-                "leave it out, and call .numpy() on the result",
-            )
+            f"CUDA: {label} does not lie on the device",
+            f"an object of type {type(array).__name__}",
+            "results are written into arrays of the device",
+            "leave it out, and call .numpy() on the result",
         )
     interface = interface_of(label, array)
     if interface is not None and interface["data"][1]:
         raise ShapeError(
-            Problem(f"CUDA: {label} is read only", "an array that refuses writing", "results are written", "copy it")
+            f"CUDA: {label} is read only", "an array that refuses writing", "results are written", "copy it"
         )
 
 
@@ -147,10 +143,8 @@ def _outline(array: Placed, dtype: np.dtype[Any]) -> npt.NDArray[Any]:
 
 def _shared(label: str, what: str) -> ShapeError:
     return ShapeError(
-        Problem(
-            f"CUDA: {label} shares memory",
-            what,
-            "an output shares no memory with another array: each is written while others are read",
-            "pass an array, or a copy, of its own",
-        )
+        f"CUDA: {label} shares memory",
+        what,
+        "an output shares no memory with another array: each is written while others are read",
+        "pass an array, or a copy, of its own",
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import sys
 from typing import Any
 
-from symofros.errors import ArgumentError, Problem, SymofrosError
+from symofros.errors import ArgumentError, SymofrosError
 from symofros.runtime.cuda.driver import DEFAULT_STREAM, Driver
 
 
@@ -27,12 +27,10 @@ def stream_handle(stream: Any) -> int:
         handle = getattr(stream, name, handle)
     if isinstance(handle, bool) or not isinstance(handle, int) or handle < 0:
         raise ArgumentError(
-            Problem(
-                "CUDA: stream is no stream",
-                f"{type(stream).__name__} {stream!r:.60}",
-                "a stream is its handle, or an object of PyTorch, CuPy or with __cuda_stream__",
-                "pass torch.cuda.current_stream(), or leave it out for the default stream",
-            )
+            "CUDA: stream is no stream",
+            f"{type(stream).__name__} {stream!r:.60}",
+            "a stream is its handle, or an object of PyTorch, CuPy or with __cuda_stream__",
+            "pass torch.cuda.current_stream(), or leave it out for the default stream",
         )
     return handle or DEFAULT_STREAM
 
@@ -48,12 +46,10 @@ def is_captured(device: Driver, stream: int) -> bool:
     if captures is None or (other is not None and other != stream):
         capturing = "another stream" if other is None else f"stream {other:#x}"
         raise SymofrosError(
-            Problem(
-                "CUDA: a graph is captured from another stream",
-                f"{capturing} captures, the call is for {_shown(stream)}",
-                "a graph consists of what is started in the stream that it is captured from",
-                "pass stream=torch.cuda.current_stream(), or what your library has in its place",
-            )
+            "CUDA: a graph is captured from another stream",
+            f"{capturing} captures, the call is for {_shown(stream)}",
+            "a graph consists of what is started in the stream that it is captured from",
+            "pass stream=torch.cuda.current_stream(), or what your library has in its place",
         )
     return captures
 
@@ -61,7 +57,7 @@ def is_captured(device: Driver, stream: int) -> bool:
 def refused_in_capture(what: str, found: str, remedy: str) -> SymofrosError:
     """Error for a call that can't be captured in a graph."""
     rule = "while a graph is captured nothing is allocated, copied from the host or waited for"
-    return SymofrosError(Problem(f"CUDA: {what} can't be captured in a graph", found, rule, remedy))
+    return SymofrosError(f"CUDA: {what} can't be captured in a graph", found, rule, remedy)
 
 
 def _capturing_stream() -> int | None:

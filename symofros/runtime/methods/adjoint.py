@@ -10,7 +10,7 @@ import numpy as np
 
 from symofros.base.functions import FUNCTIONS
 from symofros.base.model_function import OutputArray, size_of
-from symofros.errors import Problem, ShapeError
+from symofros.errors import ShapeError
 from symofros.runtime.calls.kernel import Array, Numbers
 from symofros.runtime.functions import ArrayLike, Functions
 
@@ -71,12 +71,10 @@ class AdjointFunctions(Functions):
         weights = FUNCTIONS[name].cotangents
         if all(arrays.get(group) is None for group in weights):
             raise ShapeError(
-                Problem(
-                    f"model '{self.record.name}': no cotangent for {name}",
-                    ", ".join(arrays) or "no arrays",
-                    "one cotangent at least weighs the outputs",
-                    f"pass {' or '.join(weights)}, of the shape of its output",
-                )
+                f"model '{self.record.name}': no cotangent for {name}",
+                ", ".join(arrays) or "no arrays",
+                "one cotangent at least weighs the outputs",
+                f"pass {' or '.join(weights)}, of the shape of its output",
             )
         given = dict(arrays)
         signature = self._kernel(f"{name}_vjp", self._frame_or_none(frame), "frames have names").signature
@@ -141,13 +139,11 @@ class AdjointFunctions(Functions):
             fits = fits and (not stated or n == size_of(text, known))
         if not fits:
             raise ShapeError(
-                Problem(
-                    f"model '{self.record.name}': {group} has the wrong shape",
-                    str(array.shape),
-                    f"a cotangent has the shape of its output, (..., {', '.join(output.shape)}): {size} numbers a state"
-                    if rank
-                    else "the output is one number a state",
-                    "give it as the function returns its output",
-                )
+                f"model '{self.record.name}': {group} has the wrong shape",
+                str(array.shape),
+                f"a cotangent has the shape of its output, (..., {', '.join(output.shape)}): {size} numbers a state"
+                if rank
+                else "the output is one number a state",
+                "give it as the function returns its output",
             )
         return array.reshape(*outer, size)

@@ -6,7 +6,7 @@ from collections.abc import Callable
 from typing import Any, Self
 
 from symofros.base.html import html_table
-from symofros.errors import ArgumentError, Problem, SymofrosError
+from symofros.errors import ArgumentError, SymofrosError
 from symofros.runtime.calls.kernel import Array, Precision
 from symofros.runtime.cuda.cuda_model import CudaModel
 from symofros.runtime.methods.parameters import ParameterFunctions
@@ -23,12 +23,10 @@ class CopyFunctions(ParameterFunctions):
         """
         if not isinstance(threads, int) or threads < 1:
             raise ArgumentError(
-                Problem(
-                    f"model '{self.record.name}': not a number of threads",
-                    repr(threads)[:80],
-                    "threads is a whole number, 1 or more",
-                    "os.cpu_count() at most pays",
-                )
+                f"model '{self.record.name}': not a number of threads",
+                repr(threads)[:80],
+                "threads is a whole number, 1 or more",
+                "os.cpu_count() at most pays",
             )
         return self._like(threads=threads)
 
@@ -52,12 +50,10 @@ class CopyFunctions(ParameterFunctions):
     def _check_precision(self, precision: Precision) -> None:
         if not isinstance(precision, str) or precision not in ("double", "single"):
             raise ArgumentError(
-                Problem(
-                    f"model '{self.record.name}': no such precision",
-                    repr(precision)[:80],
-                    "precision is 'double' or 'single'",
-                    "numpy.float32 is 'single'",
-                )
+                f"model '{self.record.name}': no such precision",
+                repr(precision)[:80],
+                "precision is 'double' or 'single'",
+                "numpy.float32 is 'single'",
             )
 
     def cuda(self, precision: Precision | None = None, *, contract: bool = False) -> CudaModel:
@@ -75,12 +71,10 @@ class CopyFunctions(ParameterFunctions):
             self._check_precision(precision)
         if self._device_code is None:
             raise SymofrosError(
-                Problem(
-                    f"model '{self.record.name}': no kernels",
-                    "a model without its description, as that of a compiled diagram",
-                    "kernels are generated from a description",
-                    "compile the system that it is of",
-                )
+                f"model '{self.record.name}': no kernels",
+                "a model without its description, as that of a compiled diagram",
+                "kernels are generated from a description",
+                "compile the system that it is of",
             )
         return CudaModel(self.record, self._par, self._device_code, precision or self._precision, contract)
 
@@ -125,12 +119,10 @@ class CopyFunctions(ParameterFunctions):
         """
         if self._origin is None:
             raise SymofrosError(
-                Problem(
-                    f"model '{self.record.name}': it can't be pickled",
-                    "a model without its description, as that of a compiled diagram",
-                    "a model is pickled by its description",
-                    "pickle the description, and compile it there",
-                )
+                f"model '{self.record.name}': it can't be pickled",
+                "a model without its description, as that of a compiled diagram",
+                "a model is pickled by its description",
+                "pickle the description, and compile it there",
             )
         return _restored, (self._origin, self._par, self._threads, self._precision, self._parameter_check is not None)
 

@@ -10,7 +10,7 @@ import numpy.typing as npt
 
 from symofros.base.arguments import check_argument
 from symofros.base.smoothed_sign import smoothed_sign
-from symofros.errors import ArgumentError, Problem
+from symofros.errors import ArgumentError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import ArrayLike, Functions
 
@@ -88,7 +88,7 @@ class IdentificationFunctions(Functions):
         check_argument("regressor: joint_terms", joint_terms, Sequence[JointTerm])
         if len(set(joint_terms)) < len(joint_terms):
             what, rule = f"model '{self.record.name}': regressor: a term is named twice", "a term has its columns once"
-            raise ArgumentError(Problem(what, ", ".join(joint_terms), rule, "name each term once"))
+            raise ArgumentError(what, ", ".join(joint_terms), rule, "name each term once")
 
     def _smoothing(self, minimum_velocity: npt.ArrayLike) -> Array:
         given = np.asarray(minimum_velocity)
@@ -98,11 +98,9 @@ class IdentificationFunctions(Functions):
             or not np.all((given > 0.0) & (given < np.inf))
         ):
             raise ArgumentError(
-                Problem(
-                    f"model '{self.record.name}': regressor: minimum_velocity can't be taken",
-                    f"{minimum_velocity!r:.60}",
-                    f"a finite number above zero, or one for each of {self.nv} speeds",
-                    "take that of the joint's Friction; 0.001 is its default",
-                )
+                f"model '{self.record.name}': regressor: minimum_velocity can't be taken",
+                f"{minimum_velocity!r:.60}",
+                f"a finite number above zero, or one for each of {self.nv} speeds",
+                "take that of the joint's Friction; 0.001 is its default",
             )
         return given.astype(np.float64)

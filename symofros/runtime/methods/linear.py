@@ -9,7 +9,7 @@ import numpy as np
 
 from symofros.base.arguments import check_argument
 from symofros.base.rotations import skew
-from symofros.errors import Problem, UnknownNameError, did_you_mean
+from symofros.errors import UnknownNameError, did_you_mean
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.record import Segment
 
@@ -97,12 +97,10 @@ def linearize(
 def _unknown(output: Output) -> UnknownNameError:
     known = (*_PLAIN, *_FRAME_FUNCTIONS)
     return UnknownNameError(
-        Problem(
-            "linearize: no such output",
-            repr(output)[:80],
-            "an output is q, v, a, lam, or (frame_pose, frame_velocity or frame_acceleration, frame)",
-            did_you_mean(output if isinstance(output, str) else output[0], known) or "name one of these",
-        )
+        "linearize: no such output",
+        repr(output)[:80],
+        "an output is q, v, a, lam, or (frame_pose, frame_velocity or frame_acceleration, frame)",
+        did_you_mean(output if isinstance(output, str) else output[0], known) or "name one of these",
     )
 
 

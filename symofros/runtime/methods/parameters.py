@@ -9,7 +9,7 @@ from typing import Self
 import numpy as np
 
 from symofros.base.arrays import real_array
-from symofros.errors import ParameterError, Problem, SymofrosError
+from symofros.errors import ParameterError, SymofrosError
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.functions import Functions
 
@@ -62,12 +62,10 @@ class ParameterFunctions(Functions):
             return other
         if self._parameter_check is None:
             raise SymofrosError(
-                Problem(
-                    f"model '{self.record.name}': nothing is known of its parameters",
-                    "checks that were left out, or a model without its description",
-                    "a compiled model checks its parameters unless that is turned off",
-                    "use the model that with_parameter_checks(False) was called on",
-                )
+                f"model '{self.record.name}': nothing is known of its parameters",
+                "checks that were left out, or a model without its description",
+                "a compiled model checks its parameters unless that is turned off",
+                "use the model that with_parameter_checks(False) was called on",
             )
         return self._like()
 
@@ -76,11 +74,9 @@ class ParameterFunctions(Functions):
         if number is None or number.shape != () or not np.isfinite(number):
             what = f"model '{self.record.name}': parameter '{name}' is not a finite number"
             raise ParameterError(
-                Problem(
-                    what,
-                    repr(value)[:80],
-                    "a parameter is one finite number",
-                    "pass par=… to a function for values that vary by state",
-                )
+                what,
+                repr(value)[:80],
+                "a parameter is one finite number",
+                "pass par=… to a function for values that vary by state",
             )
         return float(number)

@@ -6,7 +6,7 @@ from typing import NamedTuple
 
 import numpy as np
 
-from symofros.errors import Problem, ShapeError
+from symofros.errors import ShapeError
 from symofros.runtime.calls.kernel import Array, Kernel
 from symofros.runtime.functions import ArrayLike
 from symofros.runtime.methods.constraints import ConstraintFunctions
@@ -162,12 +162,10 @@ class ReactionFunctions(ConstraintFunctions, StateFunctions):
     ) -> Array:
         if lam is None and self.nc:
             raise ShapeError(
-                Problem(
-                    f"{name} of model '{self.record.name}': no lam",
-                    f"{self.nc} constraints, whose forces joints carry too",
-                    "(..., nc) multipliers",
-                    "give those of forward_dynamics(..., multipliers=True) or of sf.actuator_efforts",
-                )
+                f"{name} of model '{self.record.name}': no lam",
+                f"{self.nc} constraints, whose forces joints carry too",
+                "(..., nc) multipliers",
+                "give those of forward_dynamics(..., multipliers=True) or of sf.actuator_efforts",
             )
         given = {"q": q, "v": v, "a": a, "u": u, "lam": np.zeros(0) if lam is None else lam, "t": t}
         return self._one(name, given, par)

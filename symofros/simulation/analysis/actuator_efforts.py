@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, numeric, vector
-from symofros.errors import ActuationError, Problem, ShapeError, UnknownNameError, did_you_mean
+from symofros.errors import ActuationError, ShapeError, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.constrained import Eliminated, eliminate, free_motions, natural_sizes, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model
@@ -162,22 +162,18 @@ def _names(model: Model, actuators: Collection[str] | None) -> tuple[str, ...]:
     for name in actuators:
         if name not in known:
             raise UnknownNameError(
-                Problem(
-                    f"model '{model.record.name}': no actuator '{name}'",
-                    ", ".join(known[:12]) or "neither inputs nor speeds",
-                    "an actuator is an input that prescribes no motion, or a speed",
-                    did_you_mean(name, known) or "name one of these",
-                )
+                f"model '{model.record.name}': no actuator '{name}'",
+                ", ".join(known[:12]) or "neither inputs nor speeds",
+                "an actuator is an input that prescribes no motion, or a speed",
+                did_you_mean(name, known) or "name one of these",
             )
     twice = [name for name, times in Counter(actuators).items() if times > 1]
     if twice:
         raise ActuationError(
-            Problem(
-                f"model '{model.record.name}': an actuator is named more than once",
-                ", ".join(f"'{name}'" for name in twice),
-                "each actuator has one effort, in the order of their names",
-                "name each once",
-            )
+            f"model '{model.record.name}': an actuator is named more than once",
+            ", ".join(f"'{name}'" for name in twice),
+            "each actuator has one effort, in the order of their names",
+            "name each once",
         )
     return tuple(actuators)
 
@@ -185,9 +181,7 @@ def _names(model: Model, actuators: Collection[str] | None) -> tuple[str, ...]:
 def _vector(name: str, values: npt.ArrayLike, size: int) -> Array:
     array = numeric(name, values)
     if array.ndim == 0 or array.shape[-1] != size:
-        raise ShapeError(
-            Problem(f"{name} has the wrong shape", str(array.shape), f"{name} has shape (..., {size})", "mend it")
-        )
+        raise ShapeError(f"{name} has the wrong shape", str(array.shape), f"{name} has shape (..., {size})", "mend it")
     return array
 
 
@@ -235,13 +229,11 @@ def _solve(
     if excess.max(initial=0.0) > 0.0:
         worst = int(np.argmax(excess))
         raise ActuationError(
-            Problem(
-                f"model '{model.record.name}': {_listed(names)} can't produce the motion{place_in_batch(index)}",
-                f"{rank} independent efforts for {len(free)} freedoms; {left[worst]:.3g} is left at speed"
-                f" '{model.names.v[free[worst]]}'",
-                "the efforts of the actuators produce every motion, or this one happens to need no others",
-                "name more actuators, or give the accelerations that forward_dynamics finds",
-            )
+            f"model '{model.record.name}': {_listed(names)} can't produce the motion{place_in_batch(index)}",
+            f"{rank} independent efforts for {len(free)} freedoms; {left[worst]:.3g} is left at speed"
+            f" '{model.names.v[free[worst]]}'",
+            "the efforts of the actuators produce every motion, or this one happens to need no others",
+            "name more actuators, or give the accelerations that forward_dynamics finds",
         )
     return tau, pseudo_inverse(G, measures).T @ (r - B @ tau), len(names) - rank
 
@@ -277,13 +269,11 @@ def _check_linear(model: Model, terms: _State, efforts: Array, force: Array, nam
     if excess.max(initial=0.0) > 0.0:
         *index, k = (int(i) for i in np.unravel_index(int(np.argmax(excess)), excess.shape))
         raise ActuationError(
-            Problem(
-                f"model '{model.record.name}': forces not linear in {_listed(names)}{place_in_batch(tuple(index))}",
-                f"at speed '{model.names.v[k]}' the efforts found give {force[(*index, k)]:.6g}, a linear law"
-                f" {made[(*index, k)]:.6g}",
-                "an actuator's force is proportional to its input",
-                "name the speeds of the joints that the actuators drive instead",
-            )
+            f"model '{model.record.name}': forces not linear in {_listed(names)}{place_in_batch(tuple(index))}",
+            f"at speed '{model.names.v[k]}' the efforts found give {force[(*index, k)]:.6g}, a linear law"
+            f" {made[(*index, k)]:.6g}",
+            "an actuator's force is proportional to its input",
+            "name the speeds of the joints that the actuators drive instead",
         )
 
 

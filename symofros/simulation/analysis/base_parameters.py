@@ -11,7 +11,7 @@ import numpy.typing as npt
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array
-from symofros.errors import ArgumentError, AssemblyError, Problem, ShapeError
+from symofros.errors import ArgumentError, AssemblyError, ShapeError
 from symofros.runtime.constrained import null_space, pseudo_inverse
 from symofros.runtime.model import JointTerm, Model
 from symofros.simulation.analysis.kinematics.assembly import assemble
@@ -114,15 +114,15 @@ class BaseParameters:
         if spread.shape != Y.shape[-2:-1]:
             raise _does_not_fit("noise", spread.shape, str(Y.shape[-2:-1]), "one number a row of the regressor")
         if not all(np.all(np.isfinite(x)) for x in (Y, measured, spread)):
-            raise ShapeError(Problem("fit: entries are not finite", "nan or inf", "numbers are finite", "drop them"))
+            raise ShapeError("fit: entries are not finite", "nan or inf", "numbers are finite", "drop them")
         if np.any(spread <= 0.0):
             what, rule = "fit: noise is out of range", "standard deviations are above zero"
-            raise ArgumentError(Problem(what, f"{spread.min():g}", rule, "leave it out"))
+            raise ArgumentError(what, f"{spread.min():g}", rule, "leave it out")
         b = len(self.independent)
         rows = (Y[..., self.independent] / spread[:, np.newaxis]).reshape(-1, b)
         if len(rows) <= b:
             what, found = "fit: equations are too few", f"{len(rows)} equations for {b} parameters"
-            raise ArgumentError(Problem(what, found, "equations outnumber parameters", "more samples"))
+            raise ArgumentError(what, found, "equations outnumber parameters", "more samples")
         return self._fitted(rows, (measured / spread).ravel())
 
     def _fitted(self, rows: Array, measured: Array) -> Fit:
@@ -207,7 +207,7 @@ def base_parameters(
     for name, value, least in (("samples", samples, 1), ("seed", seed, 0)):
         if value is not None and not least <= value <= _MOST:
             what, rule = f"base_parameters: {name} is out of range", f"{least} <= {name} <= {_MOST}"
-            raise ArgumentError(Problem(what, f"{value:g}" if value < _MOST else "more", rule, "leave it out"))
+            raise ArgumentError(what, f"{value:g}" if value < _MOST else "more", rule, "leave it out")
     rng = np.random.default_rng(seed)
     columns = model.regressor_columns(joint_terms)
     moved = [_motion(model, rng)]
@@ -226,7 +226,7 @@ def base_parameters(
             "equations outnumber base parameters, or some are missed",
         )
         found = f"{count} samples give {len(Y)} equations, all independent"
-        raise ArgumentError(Problem(what, found, rule, "more samples, or leave it out"))
+        raise ArgumentError(what, found, rule, "more samples, or leave it out")
     independent = sorted(int(seen[i]) for i in order)
     # Columns of one size: lengths may be of micrometres or megametres, whose powers stand in Y and in `combine`.
     sizes = np.where(scale > 0.0, scale, 1.0)
@@ -269,7 +269,7 @@ def _motion(model: Model, rng: np.random.Generator) -> _Motion:
 def _does_not_fit(
     what: str, found: tuple[int, ...], wanted: str, remedy: str = "of the same motion and joint_terms"
 ) -> ShapeError:
-    return ShapeError(Problem(f"fit: {what} does not fit", str(found), wanted, remedy))
+    return ShapeError(f"fit: {what} does not fit", str(found), wanted, remedy)
 
 
 def _along(along: list[Array], rows: Array) -> Array:

@@ -10,7 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import Array
-from symofros.errors import BeamTheoryError, Problem, SymofrosError
+from symofros.errors import BeamTheoryError, SymofrosError
 from symofros.runtime.beams import BeamBending, ElasticBeam, amplification_of, largest_bending
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.mass_matrix import mass_matrix
@@ -220,10 +220,8 @@ def refuse_beyond(model: Model, bendings: Sequence[BeamBending], limit: float, r
     worst = largest_bending(bendings)
     if worst is not None and worst.error > limit:
         raise BeamTheoryError(
-            Problem(
-                f"model '{model.record.name}': {result} lies beyond the theory of its beams",
-                str(worst),
-                f"the estimated error is at most beam_limit = {100.0 * limit:g} %",
-                f"{worst.remedy}; or raise beam_limit to see what second-order theory says",
-            )
+            f"model '{model.record.name}': {result} lies beyond the theory of its beams",
+            str(worst),
+            f"the estimated error is at most beam_limit = {100.0 * limit:g} %",
+            f"{worst.remedy}; or raise beam_limit to see what second-order theory says",
         )

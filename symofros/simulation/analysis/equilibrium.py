@@ -241,10 +241,8 @@ def _refuse_without_rest(model: Model, bendings: tuple[BeamBending, ...], count:
     worst = largest_bending(bendings)
     if worst is not None and worst.error > _BLAMED:
         raise BeamTheoryError(
-            Problem(
-                f"model '{model.record.name}': no equilibrium was found, and the theory of its beams may have none",
-                f"after {count} steps, where the search has come to: {worst}",
-                "strain energy to second order bounds small deflections only; large loads have no equilibrium in it",
-                f"smaller loads have one; {worst.remedy}",
-            )
+            f"model '{model.record.name}': no equilibrium was found, and the theory of its beams may have none",
+            f"after {count} steps, where the search has come to: {worst}",
+            "strain energy to second order bounds small deflections only; large loads have no equilibrium in it",
+            f"smaller loads have one; {worst.remedy}",
         )

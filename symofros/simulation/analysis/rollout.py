@@ -10,7 +10,7 @@ from numpy.typing import ArrayLike as Numbers
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, real_array
-from symofros.errors import Problem, ShapeError, SymofrosError
+from symofros.errors import ShapeError, SymofrosError
 from symofros.runtime import manifold
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
@@ -270,12 +270,10 @@ def rollout(
     if held is None or held.ndim != 2 or held.shape[1] != model.nu or not len(held) or not np.all(np.isfinite(held)):
         held_shape = type(u).__name__ if held is None else str(held.shape)
         raise ShapeError(
-            Problem(
-                f"model '{model.record.name}': u does not fit",
-                held_shape,
-                f"finite inputs of each step, of shape (n, {model.nu}), n from 1 on",
-                "np.zeros((n, model.nu)) for none",
-            )
+            f"model '{model.record.name}': u does not fit",
+            held_shape,
+            f"finite inputs of each step, of shape (n, {model.nu}), n from 1 on",
+            "np.zeros((n, model.nu)) for none",
         )
     # A copy: the derivatives read it later, when the caller may have moved on.
     held = at_unit_length(model.record, "u", held.copy())
@@ -314,12 +312,10 @@ def _stepped(
     if not (np.all(np.isfinite(q)) and np.all(np.isfinite(v))):
         lost = int(np.argmin(np.isfinite(q).all(axis=1) & np.isfinite(v).all(axis=1)))
         raise SymofrosError(
-            Problem(
-                f"model '{model.record.name}': the motion leaves the finite numbers",
-                f"at t = {t[lost]:g} s, step {lost} of {n}",
-                "a derivative needs a motion",
-                "take shorter steps, or smaller inputs",
-            )
+            f"model '{model.record.name}': the motion leaves the finite numbers",
+            f"at t = {t[lost]:g} s, step {lost} of {n}",
+            "a derivative needs a motion",
+            "take shorter steps, or smaller inputs",
         )
     return Rollout(t, q, v, u, h, model, method, par, stages)
 
@@ -333,7 +329,7 @@ def _refuse(model: Model, method: str, dt: float, t0: float) -> None:
     elif model.nc:
         fault, remedy = f"{model.nc} constraints", "cut the loops, and add their forces as springs"
     if fault:
-        raise SymofrosError(Problem(f"model '{model.record.name}': no derivatives of its motion", fault, _RULE, remedy))
+        raise SymofrosError(f"model '{model.record.name}': no derivatives of its motion", fault, _RULE, remedy)
 
 
 def _fitting(name: str, given: Numbers | None, shape: tuple[int, ...]) -> Array:
@@ -343,5 +339,5 @@ def _fitting(name: str, given: Numbers | None, shape: tuple[int, ...]) -> Array:
     array = real_array(given)
     if array is None or array.shape != shape:
         stated = type(given).__name__ if array is None else str(array.shape)
-        raise ShapeError(Problem(f"rollout: {name} does not fit", stated, f"an array of shape {shape}", "reshape it"))
+        raise ShapeError(f"rollout: {name} does not fit", stated, f"an array of shape {shape}", "reshape it")
     return np.asarray(array, dtype=np.float64)

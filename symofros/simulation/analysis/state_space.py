@@ -11,7 +11,7 @@ import numpy.typing as npt
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, numeric
 from symofros.base.measures import Measures
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.runtime.constrained import null_space, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model, Output
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
@@ -79,12 +79,10 @@ def state_space(
     if not np.all(np.isfinite(A)):
         configuration = numeric("q", model.by_name("q", q))
         raise SymofrosError(
-            Problem(
-                f"model '{model.record.name}': no linear model about this state",
-                singular_mass(model, configuration, par, u) or "derivatives that are not finite",
-                "accelerations and their derivatives are finite",
-                ADVICE,
-            )
+            f"model '{model.record.name}': no linear model about this state",
+            singular_mass(model, configuration, par, u) or "derivatives that are not finite",
+            "accelerations and their derivatives are finite",
+            ADVICE,
         )
     S = np.eye(len(A))
     if model.nc:  # Constraints do not bind states of forces.

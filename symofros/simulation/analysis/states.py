@@ -7,7 +7,7 @@ import math
 import numpy as np
 
 from symofros.base.arrays import Array, numeric, vector
-from symofros.errors import Problem, ShapeError, SymofrosError
+from symofros.errors import ShapeError, SymofrosError
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
 
@@ -34,7 +34,7 @@ def given_inputs(model: Model, u: ArrayLike | None) -> Array:
         if not np.isfinite(stated[..., first : first + 4]).all():
             names = ", ".join(model.names.u[first : first + 4])
             what, rule = "a number that is not finite", f"{names} are a rotation"
-            raise ShapeError(Problem(f"model '{model.record.name}': u is no motion", what, rule, "give finite numbers"))
+            raise ShapeError(f"model '{model.record.name}': u is no motion", what, rule, "give finite numbers")
     return at_unit_length(model.record, "u", stated)
 
 
@@ -52,7 +52,7 @@ def check_search(what: str, tolerance: float, iterations: int = 1, *, below: flo
     """
     if not 0.0 < tolerance < below:
         rule = f"a bound of errors is above zero and {'finite' if below == math.inf else f'below {below:g}'}"
-        raise SymofrosError(Problem(f"{what}: tolerance is out of range", f"{tolerance:g}", rule, "leave it out"))
+        raise SymofrosError(f"{what}: tolerance is out of range", f"{tolerance:g}", rule, "leave it out")
     if iterations < 1:
         found, rule = f"{iterations:.6g}", "the most steps that may be taken are one or more"
-        raise SymofrosError(Problem(f"{what}: iterations is out of range", found, rule, "leave it out"))
+        raise SymofrosError(f"{what}: iterations is out of range", found, rule, "leave it out")

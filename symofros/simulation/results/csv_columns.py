@@ -34,10 +34,6 @@ class LineError(ValueError):
 def read_csv(path: Path, most_numbers: int) -> dict[str, Array]:
     """Columns (n) by the names in the first line.
 
-    Args:
-        path: Path of the file.
-        most_numbers: The most numbers that it may have.
-
     Raises:
         OSError: The file can't be read.
         TooLargeError: It has more numbers.

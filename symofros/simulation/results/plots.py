@@ -80,7 +80,7 @@ def draw(t: Array, panels: Sequence[Panel], title: str, figure: Any = None) -> A
     """
     if not panels:
         rule, remedy = "a plot shows outputs of blocks", "add a block with an output"
-        raise SymofrosError(Problem("plot: there is nothing to draw", "no signals", rule, remedy))
+        raise SymofrosError("plot: there is nothing to draw", "no signals", rule, remedy)
     if figure is None:
         figure = figure_class()(figsize=(8.0, 1.0 + 2.2 * len(panels)), layout="constrained")
     axes = figure.subplots(len(panels), 1, squeeze=False)[:, 0]
@@ -106,7 +106,7 @@ def check_picture(path: Path) -> None:
     if path.suffix[1:].lower() not in formats:
         rule = f"Matplotlib writes {', '.join(sorted(formats))}"
         raise SymofrosError(
-            Problem(f"plot: can't write '{path.name}'", path.suffix or "no suffix", rule, "choose .png, .svg or .pdf")
+            f"plot: can't write '{path.name}'", path.suffix or "no suffix", rule, "choose .png, .svg or .pdf"
         )
     check_writable(path)
 
@@ -128,7 +128,7 @@ def check_curves(model: Model, wanted: Iterable[str]) -> None:
     for name in (name for name in wanted if name not in every):
         rule = "a picture shows coordinates, speeds and inputs by their names"
         missing = f"plot: no coordinate, speed or input '{name}'"
-        raise UnknownNameError(Problem(missing, ", ".join(every[:12]), rule, did_you_mean(name, every)))
+        raise UnknownNameError(missing, ", ".join(every[:12]), rule, did_you_mean(name, every))
 
 
 def window_figure() -> Any:
@@ -142,12 +142,10 @@ def window_figure() -> Any:
     backend = pyplot.get_backend()
     if backend.lower() in _PAPER:
         raise SymofrosError(
-            Problem(
-                "plot: no window can be opened",
-                f"Matplotlib draws by '{backend}'",
-                "a window needs a screen",
-                "write a picture: --plot run.png",
-            )
+            "plot: no window can be opened",
+            f"Matplotlib draws by '{backend}'",
+            "a window needs a screen",
+            "write a picture: --plot run.png",
         )
     return pyplot.figure(layout="constrained")
 

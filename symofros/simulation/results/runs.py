@@ -8,7 +8,7 @@ from collections.abc import Iterator
 import numpy as np
 import numpy.typing as npt
 
-from symofros.errors import Problem, ShapeError
+from symofros.errors import ShapeError
 from symofros.simulation.results.ends import ENDS
 from symofros.simulation.results.outcome import Outcome
 from symofros.simulation.stepping.status import Status
@@ -56,7 +56,7 @@ class Runs(ABC):
         found = np.arange(self.status.size).reshape(self.shape)[index]
         if np.ndim(found):
             what, rule = f"runs: index {index} is not that of one run", f"an index into all of {self.shape}"
-            raise ShapeError(Problem(what, f"runs of shape {np.shape(found)}", rule, "number each dimension"))
+            raise ShapeError(what, f"runs of shape {np.shape(found)}", rule, "number each dimension")
         return int(found)
 
     def __len__(self) -> int:

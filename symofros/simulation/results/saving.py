@@ -16,7 +16,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.base.stored import check_writable, write_atomically
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 
 T = TypeVar("T")
 
@@ -26,22 +26,16 @@ SUFFIXES = (".npz", ".csv", ".parquet")
 def check_file(path: Path, what: str) -> None:
     """Refuse a file that columns and arrays can't be saved to; a run is asked before it begins.
 
-    Args:
-        path: Path of the file.
-        what: Is saved, for messages.
-
     Raises:
         SymofrosError: Another suffix than SUFFIXES; or Parquet without pyarrow.
         OSError: The file can't be written.
     """
     if path.suffix not in SUFFIXES:
         raise SymofrosError(
-            Problem(
-                f"{what}: can't save as '{path.name}'",
-                path.suffix or "no suffix",
-                ".npz, .csv or .parquet",
-                "choose one of them",
-            )
+            f"{what}: can't save as '{path.name}'",
+            path.suffix or "no suffix",
+            ".npz, .csv or .parquet",
+            "choose one of them",
         )
     if path.suffix == ".parquet":
         _pyarrow(what)
@@ -50,10 +44,6 @@ def check_file(path: Path, what: str) -> None:
 
 def save_or_keep(save: Callable[[Path], T], path: Path) -> T:
     """Save a result; where its file can't be written, such as on a full disk, keep it in another folder.
-
-    Args:
-        save: Writes the result to a path.
-        path: Path of the file.
 
     Raises:
         SymofrosError: The file can't be written; it says where the result is kept.
@@ -69,7 +59,7 @@ def save_or_keep(save: Callable[[Path], T], path: Path) -> T:
                 rule = "files are written where there is room, and the right to write"
                 found = error.strerror or str(error)
                 raise SymofrosError(
-                    Problem(f"'{path}' can't be written", found, rule, f"the run is kept: move '{kept}'")
+                    f"'{path}' can't be written", found, rule, f"the run is kept: move '{kept}'"
                 ) from None
         raise
 
@@ -110,12 +100,10 @@ def _pyarrow(what: str) -> tuple[Any, Any]:
         return import_module("pyarrow"), import_module("pyarrow.parquet")  # An extra: 40 MB that only this needs.
     except ImportError:
         raise SymofrosError(
-            Problem(
-                f"{what}: Parquet needs pyarrow",
-                "it is not installed",
-                "pyarrow writes Parquet",
-                "pip install pyarrow, or save as .npz",
-            )
+            f"{what}: Parquet needs pyarrow",
+            "it is not installed",
+            "pyarrow writes Parquet",
+            "pip install pyarrow, or save as .npz",
         ) from None
 
 

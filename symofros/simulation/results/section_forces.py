@@ -9,7 +9,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.errors import Problem, UnknownNameError, did_you_mean
+from symofros.errors import UnknownNameError, did_you_mean
 from symofros.runtime.model import Model
 from symofros.simulation.results.plots import figure_class
 
@@ -45,12 +45,10 @@ class SectionForces:
         """
         if component not in COMPONENTS:
             raise UnknownNameError(
-                Problem(
-                    f"section forces of beam '{self.beam}': no '{component}'",
-                    str(component),
-                    f"components are {', '.join(COMPONENTS)}",
-                    did_you_mean(str(component), COMPONENTS) or "name one of them",
-                )
+                f"section forces of beam '{self.beam}': no '{component}'",
+                str(component),
+                f"components are {', '.join(COMPONENTS)}",
+                did_you_mean(str(component), COMPONENTS) or "name one of them",
             )
         return self.values[..., COMPONENTS.index(component)]
 
@@ -128,12 +126,10 @@ def section_forces_of(
     if not rows:
         known = tuple(dict.fromkeys(name for name, _ in sections))
         raise UnknownNameError(
-            Problem(
-                f"trajectory of '{model.record.name}': no section forces of '{beam}'",
-                ", ".join(known) or "no elastic beam with stations",
-                "section forces are of elastic beams, at their stations; segments are beams: b, b.2 and so on",
-                did_you_mean(beam, known) or "state stations, and shape functions in one direction at least",
-            )
+            f"trajectory of '{model.record.name}': no section forces of '{beam}'",
+            ", ".join(known) or "no elastic beam with stations",
+            "section forces are of elastic beams, at their stations; segments are beams: b, b.2 and so on",
+            did_you_mean(beam, known) or "state stations, and shape functions in one direction at least",
         )
     length = next(one.length for one in model.beams(par if par.ndim == 1 else par[0]) if one.name == beam)
     x = length * np.array([sections[k][1] for k in rows])

@@ -15,7 +15,7 @@ from symofros.base.arguments import checked
 from symofros.base.arrays import Array
 from symofros.base.html import html_table
 from symofros.base.names import TIME, coordinate_of, speed_column, speed_of, symbol_of
-from symofros.errors import Problem, UnknownNameError, did_you_mean
+from symofros.errors import UnknownNameError, did_you_mean
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.model import ContactForces, Model
 from symofros.simulation.analysis.sliding import contact_dynamics
@@ -261,12 +261,10 @@ class Trajectory:
         columns = tuple(self.columns())
         listed = ", ".join(columns[:12]) + (", …" if len(columns) > 12 else "")
         raise UnknownNameError(
-            Problem(
-                f"trajectory of '{self.model.record.name}': no '{str(name)[:80]}'",
-                listed,
-                "names are of coordinates, speeds and inputs",
-                did_you_mean(str(name)[:80], columns) or "see trajectory.columns(); frames are in trajectory.frames",
-            )
+            f"trajectory of '{self.model.record.name}': no '{str(name)[:80]}'",
+            listed,
+            "names are of coordinates, speeds and inputs",
+            did_you_mean(str(name)[:80], columns) or "see trajectory.columns(); frames are in trajectory.frames",
         )
 
     def __repr__(self) -> str:

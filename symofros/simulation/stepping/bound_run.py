@@ -10,7 +10,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.base.events import Event
-from symofros.errors import CompileError, Problem, SymofrosError
+from symofros.errors import CompileError, SymofrosError
 from symofros.runtime.calls import CompiledKernel, Kernel, NativeMemory, constants, native_library
 from symofros.runtime.model import Model
 from symofros.runtime.record import HELD
@@ -271,7 +271,7 @@ class BoundRun:
             if (before.EI_z, before.EI_y, *before.scale) != (after.EI_z, after.EI_y, *after.scale):
                 found = f"EI_z, EI_y = {before.EI_z:g}, {before.EI_y:g} before"
                 rule = "the length and stiffness of an elastic beam stay the same in a run"
-                raise SymofrosError(Problem("an action changes an elastic beam", found, rule, "make two runs"))
+                raise SymofrosError("an action changes an elastic beam", found, rule, "make two runs")
 
     def _bind_functions(self) -> None:
         """The model's functions, each in the slot of its name."""

@@ -12,7 +12,7 @@ from symofros.base.options import Options
 from symofros.base.stored import write_atomically
 from symofros.description import YAML_SUFFIXES, System
 from symofros.description.yaml import write_yaml
-from symofros.errors import DescriptionError, Problem, UnknownNameError, did_you_mean
+from symofros.errors import DescriptionError, UnknownNameError, did_you_mean
 from symofros.studio.advice.scene import Scene
 from symofros.studio.advice.scene_runner import Cost, Stepping
 
@@ -110,7 +110,7 @@ class Advice:
                 return one
         listed = ", ".join(dict.fromkeys(one.kind for one in self.choices)) or "none"
         what, rule = f"no choice of kind '{kind}' about '{subject}'", "a choice has a kind and a subject"
-        raise UnknownNameError(Problem(what, f"kinds: {listed}", rule, "see `choices`"))
+        raise UnknownNameError(what, f"kinds: {listed}", rule, "see `choices`")
 
     def write(self, path: str | os.PathLike[str]) -> None:
         """Write the reduced system as native YAML, headed by what was left out.
@@ -124,12 +124,10 @@ class Advice:
         file = Path(path)
         if file.suffix.lower() not in YAML_SUFFIXES:
             raise DescriptionError(
-                Problem(
-                    f"'{file}' can't be written: unknown format",
-                    file.suffix or "no suffix",
-                    f"the suffix is one of {', '.join(YAML_SUFFIXES)}",
-                    did_you_mean(file.suffix.lower(), YAML_SUFFIXES),
-                )
+                f"'{file}' can't be written: unknown format",
+                file.suffix or "no suffix",
+                f"the suffix is one of {', '.join(YAML_SUFFIXES)}",
+                did_you_mean(file.suffix.lower(), YAML_SUFFIXES),
             )
         head = [f"Reduced from '{self.full.name}' for one scene of {self.scene.t_end:g} s.", *self.summary()]
         head += [str(one) for one in self.choices if one.verdict == "taken"]

@@ -42,11 +42,7 @@ _EXACT: dict[Load, tuple[float, float]] = {
 
 
 def residual(r: float) -> float:
-    """Vibration left by a load A (1 - cos(2 pi t / T)) on a mode, in units of its deflection by a steady A.
-
-    Args:
-        r: Periods of the mode in T.
-    """
+    """Vibration left by a load A (1 - cos(2 pi t / T)) on a mode, in units of its deflection by a steady A."""
     if abs(r - 1.0) < 1e-6:
         return math.pi
     return 2.0 * abs(math.sin(math.pi * r)) / abs(r * r - 1.0)

@@ -43,22 +43,18 @@ class Output(metaclass=CheckedCalls):
         what = f"output '{self.name}'"
         if not isinstance(self.kind, str) or self.kind not in KINDS:
             raise DescriptionError(
-                Problem(
-                    f"{what}: unknown kind",
-                    shown(self.kind),
-                    f"one of {', '.join(KINDS)}",
-                    did_you_mean(str(self.kind), KINDS),
-                )
+                f"{what}: unknown kind",
+                shown(self.kind),
+                f"one of {', '.join(KINDS)}",
+                did_you_mean(str(self.kind), KINDS),
             )
         sizes = (self.absolute, self.relative)
         if not all(math.isfinite(size) and size >= 0.0 for size in sizes) or not any(sizes):
             raise DescriptionError(
-                Problem(
-                    f"{what}: no tolerance",
-                    f"absolute {self.absolute!r}, relative {self.relative!r}",
-                    "both are finite and none is negative, and one of them is positive",
-                    "say what error does no harm, such as absolute: 1e-3",
-                )
+                f"{what}: no tolerance",
+                f"absolute {self.absolute!r}, relative {self.relative!r}",
+                "both are finite and none is negative, and one of them is positive",
+                "say what error does no harm, such as absolute: 1e-3",
             )
 
     def values(self, run: Trajectory) -> Array:
@@ -126,20 +122,18 @@ class Scene(metaclass=CheckedCalls):
         for name in ("inputs", "start"):
             object.__setattr__(self, name, MappingProxyType(dict(getattr(self, name))))
         if not (math.isfinite(self.t_end) and self.t_end > 0.0):
-            raise DescriptionError(Problem("scene: no span of time", f"t_end {self.t_end!r}", "t_end > 0", "set it"))
+            raise DescriptionError("scene: no span of time", f"t_end {self.t_end!r}", "t_end > 0", "set it")
         names = [output.name for output in self.outputs]
         if not names or len(set(names)) < len(names):
             raise DescriptionError(
-                Problem(
-                    "scene: outputs have no names of their own",
-                    ", ".join(names) or "no outputs",
-                    "a scene has outputs, each under another name",
-                    "say what matters in this scene",
-                )
+                "scene: outputs have no names of their own",
+                ", ".join(names) or "no outputs",
+                "a scene has outputs, each under another name",
+                "say what matters in this scene",
             )
         if not 10 <= self.samples <= 100_000:
             raise DescriptionError(
-                Problem("scene: samples out of range", repr(self.samples), "10 to 100000", "400 suit most motions")
+                "scene: samples out of range", repr(self.samples), "10 to 100000", "400 suit most motions"
             )
 
     @property
@@ -165,12 +159,10 @@ class Scene(metaclass=CheckedCalls):
         for name in given:
             if name not in names:
                 raise DescriptionError(
-                    Problem(
-                        f"tolerance: the scene has no output '{name}'",
-                        ", ".join(names),
-                        "tolerances are of outputs",
-                        did_you_mean(name, names),
-                    )
+                    f"tolerance: the scene has no output '{name}'",
+                    ", ".join(names),
+                    "tolerances are of outputs",
+                    did_you_mean(name, names),
                 )
         changed = (
             replace(one, absolute=float(given[one.name]), relative=0.0) if one.name in given else one

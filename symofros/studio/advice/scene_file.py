@@ -11,7 +11,7 @@ from typing import Any, TypeVar
 from symofros.base.arguments import checked
 from symofros.description import as_value, read_bytes
 from symofros.description.yaml import Node, YamlFault, compose
-from symofros.errors import DescriptionError, Problem, ShapeError, did_you_mean
+from symofros.errors import DescriptionError, ShapeError, did_you_mean
 from symofros.simulation.inputs import Signal
 from symofros.studio.advice.scene import KINDS, Output, Scene
 
@@ -49,7 +49,7 @@ class _Reader:
         self.file = file
 
     def fault(self, node: Node, what: str, found: object, rule: str, remedy: str) -> DescriptionError:
-        return DescriptionError(Problem(f"scene: {what}", f"{found}"[:80], rule, remedy, f"{self.file}:{node.line}"))
+        return DescriptionError(f"scene: {what}", f"{found}"[:80], rule, remedy, f"{self.file}:{node.line}")
 
     def scene(self, root: Node) -> Scene:
         entries = self.mapping(root, "the file", _ENTRIES)
@@ -117,7 +117,7 @@ class _Reader:
         except DescriptionError as error:
             one = error.problems[0]
             where = f"{self.file}:{node.line}"
-            raise DescriptionError(Problem(one.what, one.found, one.rule, one.remedy, where)) from None
+            raise DescriptionError(one.what, one.found, one.rule, one.remedy, where) from None
         except ShapeError as error:
             raise self.fault(
                 node, f"{error}", node.plain(), "numbers come as many as are asked for", "state as many entries as that"

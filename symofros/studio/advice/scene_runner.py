@@ -19,7 +19,6 @@ from symofros.errors import (
     AssemblyError,
     BeamTheoryError,
     InconsistentModelWarning,
-    Problem,
     SymofrosError,
     UnknownNameError,
 )
@@ -151,12 +150,10 @@ class SceneRunner:
             else:
                 known = (*names.q, *(f"d{speed}" for speed in names.v))
                 raise UnknownNameError(
-                    Problem(
-                        f"scene: start: no coordinate or speed '{name}'",
-                        ", ".join(known[:12]),
-                        "a start is of coordinates, and of speeds with a d before",
-                        near(name, known),
-                    )
+                    f"scene: start: no coordinate or speed '{name}'",
+                    ", ".join(known[:12]),
+                    "a start is of coordinates, and of speeds with a d before",
+                    near(name, known),
                 )
         start = closed_start(model, q, v, *stated_names(names.q, names.v, self.scene.start))
         return start.q, start.v
@@ -219,20 +216,16 @@ class SceneRunner:
         what = f"advise: the motion of '{system.name}' can't be computed to its tolerance"
         if failures:
             raise SymofrosError(
-                Problem(
-                    what,
-                    "; ".join(failures),
-                    f"runs reach the end within {MOST_STEPS} steps, and two of different tolerance agree",
-                    "loosen the tolerance, shorten the scene, or find by sf.simulate what ends it there",
-                )
+                what,
+                "; ".join(failures),
+                f"runs reach the end within {MOST_STEPS} steps, and two of different tolerance agree",
+                "loosen the tolerance, shorten the scene, or find by sf.simulate what ends it there",
             )
         raise SymofrosError(
-            Problem(
-                what,
-                f"runs that reach the end differ, as far as rtol = {_LADDER[-1]:g}",
-                "two runs of different tolerance agree",
-                "loosen the tolerance or shorten the scene; a chaotic motion has no exact one",
-            )
+            what,
+            f"runs that reach the end differ, as far as rtol = {_LADDER[-1]:g}",
+            "two runs of different tolerance agree",
+            "loosen the tolerance or shorten the scene; a chaotic motion has no exact one",
         )
 
     def error(self, trial: Trial, reference: Trial) -> float:
@@ -289,12 +282,10 @@ class SceneRunner:
 
 def _beyond_theory(system: System, bending: BeamBending) -> BeamTheoryError:
     return BeamTheoryError(
-        Problem(
-            f"advise: '{system.name}' leaves the theory of its beams in this scene",
-            str(bending),
-            "advice compares models of second-order theory, all of which have the same error there",
-            bending.remedy,
-        )
+        f"advise: '{system.name}' leaves the theory of its beams in this scene",
+        str(bending),
+        "advice compares models of second-order theory, all of which have the same error there",
+        bending.remedy,
     )
 
 

@@ -8,7 +8,7 @@ from dataclasses import replace
 from symofros.base.arguments import checked
 from symofros.base.options import Options
 from symofros.description import DIRECTIONS, Beam, System
-from symofros.errors import BeamTheoryError, DescriptionError, Problem, SymofrosError, did_you_mean
+from symofros.errors import BeamTheoryError, DescriptionError, SymofrosError, did_you_mean
 from symofros.runtime.beams import bending_notes
 from symofros.studio.advice.advice import Advice, Choice, Verdict
 from symofros.studio.advice.candidates import Reduction, candidates, constants, fewer_functions, lower_orders
@@ -348,10 +348,8 @@ def _check(system: System, scene: Scene) -> None:
     for name in scene.keep:
         if name not in names:
             raise DescriptionError(
-                Problem(
-                    f"scene: keep: no parameter '{name}'",
-                    ", ".join(names) or "none",
-                    "what is kept at run time is a parameter",
-                    did_you_mean(name, names),
-                )
+                f"scene: keep: no parameter '{name}'",
+                ", ".join(names) or "none",
+                "what is kept at run time is a parameter",
+                did_you_mean(name, names),
             )

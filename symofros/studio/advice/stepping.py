@@ -5,7 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterator
 
 from symofros.description import System
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.simulation.stepping.methods import METHODS
 from symofros.studio.advice.scene_runner import Cost, SceneRunner, Stepping, Trial
 
@@ -54,12 +54,10 @@ def cheapest(
             best = coarsest
     if best is None:
         raise SymofrosError(
-            Problem(
-                f"advise: no way to step '{system.name}' through the scene",
-                "; ".join(lines),
-                "one method is within its share of the tolerance",
-                "allow adaptive steps, or a larger tolerance",
-            )
+            f"advise: no way to step '{system.name}' through the scene",
+            "; ".join(lines),
+            "one method is within its share of the tolerance",
+            "allow adaptive steps, or a larger tolerance",
         )
     return (*best, lines)
 

@@ -45,12 +45,7 @@ def as_rods(system: System, names: Iterable[str], start: Mapping[str, float]) ->
 
 
 def missed_by_theory(loads: BeamLoads, bending: BeamBending) -> float:
-    """Error of outputs due to second-order theory, in units of the tolerance.
-
-    Args:
-        loads: The beam in the motion.
-        bending: Its largest bending there.
-    """
+    """Error of outputs due to second-order theory, in units of the tolerance."""
     return bending.error * loads.tip * loads.gain
 
 
@@ -58,11 +53,6 @@ def simpler_theories(loads: BeamLoads, rod: Beam, bending: BeamBending) -> Itera
     """Beams of second order in place of a rod, whole and in segments, and segments of the rod of fewer functions.
 
     Beams of second order are none where they lack what the rod has.
-
-    Args:
-        loads: The rod in the motion.
-        rod: The rod as it stands.
-        bending: Its largest bending in the motion.
     """
     error = slope_error(bending.slope**2)
     body_loads = any(load.axes == "body" for load in rod.loads)  # Segments have no axes of the undeformed beam.

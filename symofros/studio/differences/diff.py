@@ -11,7 +11,7 @@ from typing import Any
 
 from symofros.base.arguments import checked
 from symofros.description import System
-from symofros.errors import ArgumentError, DescriptionError, Problem
+from symofros.errors import ArgumentError, DescriptionError
 from symofros.exports.limits import listed
 from symofros.loading import applicable, load
 from symofros.mechanics.topology import find_problems
@@ -207,7 +207,7 @@ def compare(
     """
     if not 0.0 < tolerance < 0.1:
         rule, remedy = "0 < tolerance < 0.1, so that it absorbs rounding only", "for example tolerance=1e-6"
-        raise ArgumentError(Problem("diff: unusable tolerance", f"{tolerance:g}", rule, remedy))
+        raise ArgumentError("diff: unusable tolerance", f"{tolerance:g}", rule, remedy)
     a, b = (Mechanism(system, name) for system, name in zip((first, second), names, strict=True))
     found = Findings(a, b, tolerance, seed=0)
     differences = [*found.differences, *constraint_differences(found), *switching_differences(found)]

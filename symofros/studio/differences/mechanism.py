@@ -15,7 +15,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.base.rotations import skew
 from symofros.description import IDENTITY_POSE, Beam, Damper, Friction, Joint, JointElement, Pose, Spring, System
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 from symofros.exports.interchange.rigid import RigidLink, rigid_links
 from symofros.exports.limits import listed
 from symofros.mechanics.topology import Numbers
@@ -301,7 +301,7 @@ def _refuse(system: System, label: str) -> None:
     odd += [f"joint '{joint.name}' (prescribed)" for joint in joints if joint.prescribed]
     if odd:
         rule, remedy = "a comparison is of rigid bodies on joints of the library", "compare files of the rigid part"
-        raise DescriptionError(Problem(f"{label}: not comparable", ", ".join(odd[:5]), rule, remedy))
+        raise DescriptionError(f"{label}: not comparable", ", ".join(odd[:5]), rule, remedy)
     if len(system.bodies) > MOST_BODIES:
         rule, remedy = f"at most {MOST_BODIES} bodies are compared", "compare parts of it"
-        raise DescriptionError(Problem(f"{label}: too many bodies", f"{len(system.bodies)}", rule, remedy))
+        raise DescriptionError(f"{label}: too many bodies", f"{len(system.bodies)}", rule, remedy)

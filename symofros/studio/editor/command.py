@@ -15,7 +15,6 @@ import uvicorn
 import symofros
 from symofros.description import YAML_SUFFIXES, resolved
 from symofros.description.yaml import write_yaml
-from symofros.errors import Problem
 from symofros.expr import collect_rarely
 from symofros.studio.editor.document.session import Session
 from symofros.studio.editor.document.workspace import FileError, Workspace
@@ -76,7 +75,7 @@ def _opened(file: Path | None, reading: Mapping[str, Any]) -> Session:
         return Session(Workspace(Path.cwd()))
     path = resolved(file)
     if not path.parent.is_dir():
-        raise FileError(Problem(f"'{file}' can't be opened", "no such folder", "its folder exists", "make it first"))
+        raise FileError(f"'{file}' can't be opened", "no such folder", "its folder exists", "make it first")
     workspace = Workspace(path.parent)
     if path.suffix.lower() in YAML_SUFFIXES:
         return Session(workspace, path)

@@ -19,7 +19,7 @@ from symofros.base.arguments import checked
 from symofros.base.stored import write_atomically
 from symofros.description import System
 from symofros.diagrams.result import DiagramRun
-from symofros.errors import Problem, SymofrosError, did_you_mean
+from symofros.errors import SymofrosError, did_you_mean
 from symofros.runtime.model import ArrayLike
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.studio.viewer.drawing.drawing import Drawing
@@ -63,12 +63,10 @@ class _Recording:
         count = int(np.ceil((motion.end - motion.start) / (speed * period) - 1e-9)) + 1
         if count > MAX_FRAMES:
             raise SymofrosError(
-                Problem(
-                    "record: too long",
-                    f"{count} pictures",
-                    f"{MAX_FRAMES} at most",
-                    "raise the speed, or lower the pictures a second",
-                )
+                "record: too long",
+                f"{count} pictures",
+                f"{MAX_FRAMES} at most",
+                "raise the speed, or lower the pictures a second",
             )
         self.t = np.minimum(motion.start + speed * period * np.arange(count), motion.end)
         q, u, par = motion.at(self.t)
@@ -178,19 +176,19 @@ def record(
     speed, rate, exaggeration = positive("speed", speed), positive("rate", rate), finite("exaggeration", exaggeration)
     if any(side < 2 or side % 2 or side > 4096 for side in size):
         raise SymofrosError(
-            Problem("record: no such size", str(size), "even numbers of pixels, 2 to 4096", "such as (960, 720)")
+            "record: no such size", str(size), "even numbers of pixels, 2 to 4096", "such as (960, 720)"
         )
     if not isinstance(simulate, bool | Mapping):
         found, rule = f"{simulate!r:.40}", "True, False, or how: method, dt, rtol, atol, beam_limit"
-        raise SymofrosError(Problem("record: simulate says neither whether nor how", found, rule, "simulate=True"))
+        raise SymofrosError("record: simulate says neither whether nor how", found, rule, "simulate=True")
     asked = simulate is not False
     if asked and file.suffix != ".html":
         raise SymofrosError(
-            Problem("record: only pages simulate", f"'{file.name}'", "simulate is for .html", "leave simulate out")
+            "record: only pages simulate", f"'{file.name}'", "simulate is for .html", "leave simulate out"
         )
     if ghosts and file.suffix != ".html":
         raise SymofrosError(
-            Problem("record: only pages show ghosts", f"'{file.name}'", "ghosts are for .html", "leave ghosts out")
+            "record: only pages show ghosts", f"'{file.name}'", "ghosts are for .html", "leave ghosts out"
         )
     mechanism = Mechanism(system, tracks_of(paths))
     motion = motion_of(mechanism.model, run)
@@ -220,7 +218,7 @@ def _layers(show: Collection[str], run: Trajectory | None) -> frozenset[str]:
         check_layer("record", layer)
         if layer in ARROWS and run is None:
             rule = "forces are those of a trajectory, with its speeds and inputs"
-            raise SymofrosError(Problem(f"record: no {layer}", "coordinates over time", rule, "give the trajectory"))
+            raise SymofrosError(f"record: no {layer}", "coordinates over time", rule, "give the trajectory")
     return frozenset(show)
 
 
@@ -232,12 +230,10 @@ def check_suffix(file: Path) -> None:
     """
     if file.suffix not in _SUFFIXES:
         raise SymofrosError(
-            Problem(
-                f"record: can't write '{file.name}'",
-                file.suffix or "no suffix",
-                f"one of {', '.join(_SUFFIXES)}",
-                did_you_mean(file.suffix, _SUFFIXES),
-            )
+            f"record: can't write '{file.name}'",
+            file.suffix or "no suffix",
+            f"one of {', '.join(_SUFFIXES)}",
+            did_you_mean(file.suffix, _SUFFIXES),
         )
 
 
@@ -249,12 +245,10 @@ def _asked(
         return *shown_system_and_states(system, block), Path(run)
     if isinstance(system, DiagramRun) or isinstance(run, (str, Path)) or path is None:
         raise SymofrosError(
-            Problem(
-                "record: what is to be written?",
-                "other arguments",
-                "a system, its motion and a path; or a diagram's run and a path",
-                'for example sf.record(system, run, "run.html")',
-            )
+            "record: what is to be written?",
+            "other arguments",
+            "a system, its motion and a path; or a diagram's run and a path",
+            'for example sf.record(system, run, "run.html")',
         )
     return system, run, Path(path)
 
@@ -367,5 +361,5 @@ def _extra(module: str, why: str, install: str) -> Any:
         return import_module(module)
     except ImportError:
         raise SymofrosError(
-            Problem(f"record: {why}", f"no module {module}", "recording is an extra", f"pip install '{install}'")
+            f"record: {why}", f"no module {module}", "recording is an extra", f"pip install '{install}'"
         ) from None

@@ -10,7 +10,7 @@ from typing import Any
 from symofros.base.arguments import checked
 from symofros.description import System
 from symofros.diagrams.result import DiagramRun
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.loading import load
 from symofros.runtime.model import ArrayLike
 from symofros.studio.viewer.page.viser_server import LOOPBACK, PORT
@@ -74,7 +74,7 @@ def view(
         stated = system if isinstance(system, System) else load(system)
     if ghosts and run is None:
         rule = "ghosts are beside a motion, at the same times"
-        raise SymofrosError(Problem("view: ghosts of no motion", "no run", rule, "give the run that plays"))
+        raise SymofrosError("view: ghosts of no motion", "no run", rule, "give the run that plays")
     viewer = Viewer(stated, host=host, port=port, exaggeration=exaggeration, paths=paths)
     try:
         if run is not None:

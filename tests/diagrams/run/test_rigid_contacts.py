@@ -29,7 +29,7 @@ def hopper() -> sf.Diagram:
     of.add_model("m", system, {"z": 0.1})
     of.add(Sequence(name="force", t=[0.0, 0.5, 0.8], values=[[-10.0], [30.0], [0.0]], kind="hold"))
     of.add(Hold(name="hold", period=0.1), u="force")
-    of.add(ForwardDynamics(name="plant", model="m", tells=("contact_forces",)))
+    of.add(ForwardDynamics(name="plant", model="m", functions=("contact_forces",)))
     of.connect("hold.y", "plant.u")
     return of
 
@@ -57,7 +57,7 @@ def test_a_sampled_force_lifts_a_mass_off_the_ground(method: str) -> None:
 def test_forces_are_those_of_a_run_by_itself() -> None:
     """Sliding friction included: by the mechanism, and by a block that is given its multipliers."""
     case = CASES["slab"]
-    of = diagram(case, tells=("contact_forces",))
+    of = diagram(case, functions=("contact_forces",))
     of.add(ModelFunction(name="felt", model="m", function="contact_forces"))
     for signal in ("q", "v", "lam"):
         of.connect(f"plant.{signal}", f"felt.{signal}")
@@ -77,7 +77,7 @@ def test_no_record_of_a_ball_that_leaves_at_the_edge_at_once_says_that_it_is_dra
     top, end, _, _, sizes = SOLIDS["box"]
     of = sf.Diagram("edge")
     of.add_model("m", system_against("box", 0.0, **sizes), {"ball.pz": top + RADIUS, "ball.vx": 1.5})
-    of.add(ForwardDynamics(name="plant", model="m", tells=("contact_forces",)))
+    of.add(ForwardDynamics(name="plant", model="m", functions=("contact_forces",)))
     run = sf.Simulation(of).run(0.5, dt=7e-4, method="rk4")
     (leaves,) = run.events["plant"]
     assert leaves.name == "top opens" and leaves.t == pytest.approx(end / 1.5, abs=1e-5)

@@ -105,7 +105,7 @@ def test_a_file_states_where_they_begin(tmp_path: Path) -> None:
 @pytest.mark.parametrize("kind", STARTS)
 def test_functions_of_the_block_know_them(kind: str) -> None:
     """Told by the plant, and by ModelFunction given z, they are those of the model at q, v and z."""
-    diagram = driven(kind, tells=("potential_energy", "generalized_force"))
+    diagram = driven(kind, functions=("potential_energy", "generalized_force"))
     diagram.add(blocks.ModelFunction(name="load", model="m", function="generalized_force"),
                 q="plant.q", v="plant.v", u="push.y", z="plant.z")  # fmt: skip
     run, model = sf.Simulation(diagram).run(0.02, dt=5e-4, realtime=False), sf.compile(system(kind))

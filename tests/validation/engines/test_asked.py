@@ -54,6 +54,37 @@ def test_a_logarithm_is_the_way_back() -> None:
     assert np.max(np.abs(digits(back))) < 1e-100
 
 
+@pytest.mark.parametrize(
+    ("name", "angle", "apart", "is_opposite"),
+    [
+        ("rotations, 2^-27 from half turns", math.pi, None, None),
+        ("rotations, 2^-12 from half turns about an axis", math.pi, None, None),
+        ("rotations, 2^-12 from each other", None, 0.0, False),
+        ("rotations, 2^-27 from each other's opposite", None, 0.0, True),
+        ("rotations, each other's opposite", None, 0.0, True),
+        ("rotations, one axis", None, None, None),
+    ],
+)
+@pytest.mark.parametrize("last", [False, True])
+def test_rotations_are_as_special_as_their_tree_says(
+    name: str, angle: float | None, apart: float | None, is_opposite: bool | None, last: bool
+) -> None:
+    tree = single.trees()[name]
+    chart = "quaternion xyzw, body speeds" if last else "quaternion wxyz, body speeds"
+    layout = Layout(4, 3, ((Slot(chart, (0, 1, 2, 3), (0, 1, 2)),),))
+    near = 4.0 * 2.0**-tree.near if tree.near else 1e-15
+    for seed in range(8):
+        state, truth = random_state(tree, layout, seed), Truth(tree, layout)
+        with many_digits():
+            R, Q = (turns.turn(truth, exact(x)) for x in (state.q, state.q2))
+            vector, between = digits(turns.rotation_vector(R)), digits(turns.rotation_vector(R.T @ Q))
+        assert angle is None or 0.0 < angle - np.linalg.norm(vector) < near
+        assert apart is None or np.linalg.norm(between) < near
+        assert is_opposite is None or (state.q @ state.q2 < 0.0) == is_opposite
+        if name.endswith("axis"):
+            assert np.sum(np.abs(vector) > near) == 1
+
+
 def _points(*values: tuple[float, float, float]) -> list[Exact]:
     return [exact(value) for value in values]
 

@@ -155,12 +155,7 @@ def build(subject: Subject) -> MappedEngine | Unsupported:
 
 
 def engine(subject: Subject, name: str) -> MappedEngine | Unsupported:
-    """Exudyn's bodies and elements of a description, without its beams' rotary inertia.
-
-    Args:
-        subject: Subject, with or without beams.
-        name: Name of the engine in tables.
-    """
+    """Exudyn's bodies and elements of a description, without its beams' rotary inertia."""
     assembly = subject.assembly
     for mover in assembly.movers:
         if mover.kind not in carried.KINDS:

@@ -86,14 +86,7 @@ def _formula(scene: Scene) -> tuple[str, Any, float]:
 
 
 def crossings(values: Any, motion: str, size: float, direction: str) -> Array:
-    """Times of the zeros of a formula, by bisection between fine samples.
-
-    Args:
-        values: Formula as a function of (t, z).
-        motion: Name of the motion.
-        size: Size of the formula's values.
-        direction: Direction that counts.
-    """
+    """Times of the zeros of a formula, by bisection between fine samples."""
     t = np.linspace(0.0, _MOTIONS[motion][2], 40_001)
     sign = np.sign(values(t, position(motion, t)) + 1e-14 * size)
     found = []

@@ -87,13 +87,7 @@ def _places(group: Group) -> set[tuple[str, str, str]]:
 
 
 def scripts_of(group: Group, groups: Sequence[Group], proofs: Sequence[Mapping[str, Any]]) -> list[Mapping[str, Any]]:
-    """Proofs of a cause by scripts, the shortest first; what shows another cause, too, comes last.
-
-    Args:
-        group: The cause and its cells.
-        groups: All causes.
-        proofs: Proofs of the report.
-    """
+    """Proofs of a cause by scripts, the shortest first; what shows another cause, too, comes last."""
     places = _places(group)
     # What shows another cause, too, when this one is taken out, is no plain proof.
     both = {(cell.engine, cell.function, cell.model) for other in groups for cell in other.hidden}

@@ -45,6 +45,11 @@ FUNCTIONS: dict[str, Function] = (
     | DEVICES
 )
 FUNCTIONS |= functions_of(ATTITUDES | ORBITS | GUIDANCE | CONNECTORS, "turns") | functions_of(SPACECRAFT, "spacecraft")
+# Of "turns", what depends on the rotations R and Q: the others have no part in `Tree.beside`.
+_OF_ROTATIONS = re.compile(
+    "rotation_(matrix(?!_rate)|composed|angle|logarithm|inverse|halfway|difference|squared|to_rpy|vector_rates_along)"
+    "|pose_(composed|inverse|relative|logarithm|difference|halfway|squared)|quaternion_rates"
+)
 _ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv", "potential_energy")
 _SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")
 # Formulas in which actuators have no states that change within a step, or whose step is another than `interface.STEP`.
@@ -61,7 +66,7 @@ def suits(way: str, tree: Tree) -> bool:
     name = way.partition(":")[0]
     needs = FUNCTIONS[name].needs
     if tree.asked:
-        return tree.asked in needs
+        return tree.asked in needs and (not tree.beside or bool(_OF_ROTATIONS.match(name)))
     if way in _SENSED_BOUND:
         return bool(tree.constraints and tree.sensors)
     if tree.constraints:

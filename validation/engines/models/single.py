@@ -13,6 +13,15 @@ from ..tree import FEATURES
 from ..truth.devices import COMPILED, DEVICES
 from .files.readers import IDENTITY, TURNED
 
+# What rotations are near to, and how near: 2^-n, or exactly (0).
+_BESIDE = {
+    "half turns": (8, 17, 27),
+    "half turns about an axis": (12, 27),
+    "each other": (12, 27),
+    "each other's opposite": (0, 12, 27),
+    "one axis": (0,),
+}
+
 
 def _solid(name: str, volume: float, moments: tuple[float, float, float], density: float, **joint: Any) -> Tree:
     """A solid of principal moments, for unit mass, about its middle; its link's joint places it."""
@@ -84,7 +93,12 @@ def trees() -> dict[str, Tree]:
         replace(turns, name="vectors", asked="vectors"),
         *(replace(turns, name=group, asked=group) for group in (DEVICES | COMPILED)),
         *(replace(turns, name=name, asked=name) for name in FEATURES),
-        *(replace(turns, name=f"rotations, 2^-{near} from none", near=near) for near in (8, 12, 17, 27)),
+        *(replace(turns, name=f"rotations, 2^-{near} from none", near=near) for near in (8, 12, 17, 22, 27, 40)),
+        *(
+            replace(turns, name=f"rotations, {f'2^-{near} from ' if near else ''}{beside}", near=near, beside=beside)
+            for beside, nears in _BESIDE.items()
+            for near in nears
+        ),
         _box("box by its sizes", (-0.5, -0.25, -1.0), (0.5, 0.25, 1.0), 2.0),
         _box("box by its corners", low, high, 0.5),
         _box("box by its corners, the other way round", low, high, 0.5),

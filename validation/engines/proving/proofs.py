@@ -43,13 +43,7 @@ class Faults(NamedTuple):
 
 
 def faults(cells: Sequence[Judged], others: Iterable[Cell] = (), stored: Iterable[Data] = ()) -> Faults:
-    """What one script stands for: red cells of a function of an engine, on the trees that one cause shows it on.
-
-    Args:
-        cells: Cells that were asked now.
-        others: Stored cells.
-        stored: Proofs of these.
-    """
+    """What one script stands for: red cells of a function of an engine, on the trees that one cause shows it on."""
     judged_cells = {one.cell: one for one in cells}
     proofs = {(one["engine"], one["function"], one["model"]): one for one in stored}
     found = Faults([], [], set())

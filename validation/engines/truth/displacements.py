@@ -16,14 +16,7 @@ ROWS = 11
 
 
 def integrated(truth: Truth, q: Exact, v: Exact, rows: int = ROWS) -> Exact:
-    """Where q' = N(q) v leads with constant v in unit time.
-
-    Args:
-        truth: The truth.
-        q: Coordinates.
-        v: Speeds.
-        rows: Rows of the table (`_extrapolated`).
-    """
+    """Where q' = N(q) v leads with constant v in unit time."""
     end = q + truth.kinematics.rates(q) @ v
     # Joints move by themselves, and derivatives move one at a time.
     for joint, slot in truth.kinematics.moving():

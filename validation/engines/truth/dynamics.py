@@ -209,8 +209,43 @@ def _nearer(layout: HasLayout, q: Array, part: float) -> Array:
     return near
 
 
+def _beside(tree: Tree, layout: HasLayout, q: Array, q2: Array) -> tuple[Array, Array]:
+    """Coordinates (nq), twice, of which the quaternions are special ones (`Tree.beside`)."""
+    part = 2.0**-tree.near if tree.near else 0.0
+    ends = q.copy(), q2.copy()
+    near, near2 = (_nearer(layout, one, part) for one in (q, q2))
+    for slot in (slot for link in layout.slots for slot in link):
+        places = list(_unit_places(slot))
+        scalar_first = [places[-1], *places[:-1]] if "xyzw" in slot.chart else places
+        one, other, close, close2 = (x[scalar_first] for x in (q, q2, near, near2))
+        axis = np.eye(3)[int(np.argmax(np.abs(one[1:])))]
+        if tree.beside == "one axis":
+            pair = _about(axis, one), _about(axis, other)
+        elif tree.beside.startswith("half turns"):
+            axis = axis if tree.beside.endswith("axis") else one[1:] / math.hypot(*one[1:])
+            pair = _product(np.array([0.0, *axis]), close2), close
+        else:
+            turned = _product(one, close2)
+            pair = one, -turned if tree.beside.endswith("opposite") else turned
+        for end, quaternion in zip(ends, pair, strict=True):
+            end[scalar_first] = quaternion / math.hypot(*quaternion)
+    return ends
+
+
+def _about(axis: Array, quaternion: Array) -> Array:
+    """A turn (4) about an axis by less than a quarter turn, with the sign of the quaternion's scalar."""
+    half = math.pi / 4.0 * float(quaternion[1:] @ axis)
+    return np.array([math.cos(half), *(math.sin(half) * axis)]) * math.copysign(1.0, quaternion[0])
+
+
+def _product(p: Array, q: Array) -> Array:
+    """Product of two quaternions (4), scalars first."""
+    (w, *x), (s, *y) = p, q
+    return np.array([w * s - np.dot(x, y), *(w * np.array(y) + s * np.array(x) + np.cross(x, y))])
+
+
 def random_state(tree: Tree, model: HasLayout, seed: int) -> State:
-    """A random state on the manifold of an engine's coordinates, of sizes about one, or near zero (`Tree.near`)."""
+    """A random state on the manifold of an engine's coordinates, of sizes about one, or near others (`Tree.near`)."""
     draw = np.random.default_rng(seed)
     kinematics = Kinematics(tree, model)
     q, q2 = np.zeros(model.nq), np.zeros(model.nq)
@@ -220,7 +255,9 @@ def random_state(tree: Tree, model: HasLayout, seed: int) -> State:
             coordinates[list(slot.q)] = chart.sample(joint, draw)
             coordinates[[slot.q[k] for k in chart.position]] += tree.away[: len(chart.position)]
     v, a, tau, v2 = (draw.uniform(-1.0, 1.0, model.nv) for _ in range(4))
-    if tree.near:
+    if tree.beside:
+        q, q2 = _beside(tree, model, q, q2)
+    elif tree.near:
         part = 2.0**-tree.near
         q, q2 = (_nearer(model, one, part) for one in (q, q2))
         v, tau, v2 = (part * one for one in (v, tau, v2))

@@ -23,10 +23,6 @@ _DIGITS = 17
 def kane_source(system: sf.System, name: str) -> Source:
     """One function of a small model, as its user would have SymPy make it.
 
-    Args:
-        system: Rigid, without friction.
-        name: One of FUNCTIONS.
-
     Raises:
         NotDerivable: There are beams or constraints.
     """

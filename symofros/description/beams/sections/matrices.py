@@ -7,7 +7,7 @@ from typing import Any
 import numpy as np
 import numpy.typing as npt
 
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, did_you_mean
 
 # What counts as a matrix of a section's form, relative to its diagonal: programs write six or seven digits.
 OF_SECTION = 1e-6
@@ -30,7 +30,7 @@ def matrices_about_x(stiffness: npt.ArrayLike, mass: npt.ArrayLike, axis: str) -
     orders = {"x": [0, 1, 2, 3, 4, 5], "z": [2, 0, 1, 5, 3, 4]}
     if axis not in orders:
         rule, remedy = "the axis along the beam is x (VABS) or z (BeamDyn)", did_you_mean(str(axis), orders)
-        raise DescriptionError(Problem("section: no such axis", repr(axis), rule, remedy))
+        raise DescriptionError("section: no such axis", repr(axis), rule, remedy)
     order = np.ix_(orders[axis], orders[axis])
     return symmetric_matrix(stiffness, "K")[order], symmetric_matrix(mass, "M")[order]
 
@@ -44,7 +44,7 @@ def properties_of_stiffness(K: Matrix) -> dict[str, Any]:
     least = float(np.linalg.eigvalsh(K)[0])
     if not least > 0.0:
         rule, found = "every strain takes energy", f"its least eigenvalue is {least:.3g}"
-        raise DescriptionError(Problem("section: stiffness is not positive definite", found, rule, CHECK))
+        raise DescriptionError("section: stiffness is not positive definite", found, rule, CHECK)
     flexibility = np.linalg.inv(K[:3, :3])
     to_centers = flexibility @ K[:3, 3:]
     bending = K[3:, 3:] - K[3:, :3] @ to_centers
@@ -72,7 +72,7 @@ def properties_of_mass(M: Matrix) -> dict[str, Any]:
     m = float(M[0, 0])
     if not m > 0.0:
         found, rule = f"its first entry is {m:g}", "a section has mass"
-        raise DescriptionError(Problem("section: M has no mass", found, rule, CHECK))
+        raise DescriptionError("section: M has no mass", found, rule, CHECK)
     y, z = -float(M[0, 5]) / m, float(M[0, 4]) / m
     return {
         "rhoA": m,
@@ -94,14 +94,14 @@ def symmetric_matrix(stated: npt.ArrayLike, label: str) -> Matrix:
         matrix = np.asarray(stated).astype(np.float64, casting="same_kind")
     except (TypeError, ValueError):
         found = f"{stated!r:.60}"
-        raise DescriptionError(Problem(f"section: matrix {label}", found, rule, "give numbers")) from None
+        raise DescriptionError(f"section: matrix {label}", found, rule, "give numbers") from None
     if matrix.shape != (6, 6) or not np.isfinite(matrix).all():
         found = f"of shape {matrix.shape}" if matrix.shape != (6, 6) else "entries that are not finite"
-        raise DescriptionError(Problem(f"section: matrix {label}", found, rule, "give all, zeros included"))
+        raise DescriptionError(f"section: matrix {label}", found, rule, "give all, zeros included")
     unlike = difference(matrix, matrix.T)
     if not unlike <= OF_SECTION:
         found = f"off by {unlike:.2g} of the diagonal"
-        raise DescriptionError(Problem(f"section: matrix {label} is not symmetric", found, rule, CHECK))
+        raise DescriptionError(f"section: matrix {label} is not symmetric", found, rule, CHECK)
     return 0.5 * (matrix + matrix.T)
 
 

@@ -30,7 +30,7 @@ from symofros.description.beams.sections.matrices import (
 from symofros.description.beams.sections.shear import ShearShape
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import Term, Value, as_value, as_values, symbols
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 from symofros.expr.expression import evaluate
 
 # Relative to the section's size, what counts as on the axis: meshes of symmetric outlines are not symmetric, and their
@@ -123,7 +123,7 @@ class Section:
         if not unlike <= OF_SECTION:
             rule = "matter in one plane: m, m, m, and moments about x that are the sum of those about y and z"
             found = f"of a section's with the same m, centre and moments it is off by {unlike:.2g}"
-            raise DescriptionError(Problem("section: M is no mass matrix of a section", found, rule, CHECK))
+            raise DescriptionError("section: M is no mass matrix of a section", found, rule, CHECK)
         if difference(K, section.stiffness_matrix()) > OF_SECTION:
             section = replace(section, stiffness=tuple(map(tuple, K.tolist())))
         return section
@@ -149,19 +149,17 @@ class Section:
         for label, value, size in self._off_axis():
             if not _is_small(value, size):
                 raise DescriptionError(
-                    Problem(
-                        f"section: {label} is not zero",
-                        f"{value:g}" if isinstance(value, float) else str(value),
-                        "a beam of second order has its mass centre, tension centre and shear centre on its axis, and y"
-                        " and z are principal axes",
-                        "for axes that are not principal ones turn the section (`turned`); for a section whose centres"
-                        " differ, which couples bending and twist, state theory: strain",
-                    )
+                    f"section: {label} is not zero",
+                    f"{value:g}" if isinstance(value, float) else str(value),
+                    "a beam of second order has its mass centre, tension centre and shear centre on its axis, and y"
+                    " and z are principal axes",
+                    "for axes that are not principal ones turn the section (`turned`); for a section whose centres"
+                    " differ, which couples bending and twist, state theory: strain",
                 )
         if self.stiffness:
             rule = "a beam of second order in its displacements has no such couplings"
             found = "a matrix of stiffness"
-            raise DescriptionError(Problem("section: couples strains", found, rule, "state theory: strain"))
+            raise DescriptionError("section: couples strains", found, rule, "state theory: strain")
         return {label: getattr(self, label) for label in SECTION if label not in (*STRAIN_STIFFNESSES, *PRODUCTS)}
 
     def _coupled_properties(self) -> dict[str, Any]:
@@ -241,12 +239,10 @@ class Section:
             return np.array([[number_of(value, "stiffness", values or {}) for value in row] for row in self.stiffness])
         if self.GA_y is None or self.GA_z is None:
             raise DescriptionError(
-                Problem(
-                    "section: stiffness against shear is not known",
-                    "GA_y or GA_z is None",
-                    "a stiffness matrix has it",
-                    "give GA_y and GA_z",
-                )
+                "section: stiffness against shear is not known",
+                "GA_y or GA_z is None",
+                "a stiffness matrix has it",
+                "give GA_y and GA_z",
             )
         EA, GA_y, GA_z, GJ, EI_y, EI_z, EI_yz = self._numbers(
             ("EA", "GA_y", "GA_z", "GJ", "EI_y", "EI_z", "EI_yz"), values
@@ -305,9 +301,7 @@ class Section:
         if not len(radii):
             rule = "extreme stresses are at the outline"
             raise DescriptionError(
-                Problem(
-                    "section: its outline is not known", "no corners, no radii", rule, "state corners, or use points"
-                )
+                "section: its outline is not known", "no corners, no radii", rule, "state corners, or use points"
             )
         reach = np.linalg.norm(gradient @ radii.T, axis=-1)
         return constant - reach, constant + reach
@@ -330,12 +324,10 @@ class Section:
         """
         if self.shape is None:
             raise DescriptionError(
-                Problem(
-                    "section: its shear stress is not known",
-                    "no rectangle, ellipse, circle or tube",
-                    "shear stress has a closed form for these",
-                    "use finite elements of the outline, as sectionproperties has them",
-                )
+                "section: its shear stress is not known",
+                "no rectangle, ellipse, circle or tube",
+                "shear stress has a closed form for these",
+                "use finite elements of the outline, as sectionproperties has them",
             )
         values = values or {}
         places = np.asarray(points, dtype=np.float64).reshape(-1, 2)
@@ -352,7 +344,7 @@ class Section:
         """Normal stress on the axis (...), and its gradient by y and z (..., 2)."""
         if self.E is None:
             rule = "stress is Young's modulus times strain"
-            raise DescriptionError(Problem("section: Young's modulus is not known", "E is None", rule, "state E"))
+            raise DescriptionError("section: Young's modulus is not known", "E is None", rule, "state E")
         E, EA, EI_y, EI_z, EI_yz = self._numbers(("E", "EA", "EI_y", "EI_z", "EI_yz"), values)
         y, z = self._point("tension_center", values)
         N, _, _, _, My, Mz = np.moveaxis(np.asarray(forces, dtype=np.float64), -1, 0)
@@ -394,11 +386,9 @@ def number_of(value: Value, label: str, values: Mapping[str, float]) -> float:
     missing = symbols(value) - values.keys()
     if missing:
         raise DescriptionError(
-            Problem(
-                f"section: {label} has no number",
-                f"it depends on {', '.join(sorted(missing))}",
-                "this needs numbers: of outlines by finite elements, of angles, of matrices",
-                "give numbers, or the values of the parameters where they are asked for",
-            )
+            f"section: {label} has no number",
+            f"it depends on {', '.join(sorted(missing))}",
+            "this needs numbers: of outlines by finite elements, of angles, of matrices",
+            "give numbers, or the values of the parameters where they are asked for",
         )
     return float(evaluate(value, values))

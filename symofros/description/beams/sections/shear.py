@@ -13,7 +13,7 @@ import numpy.typing as npt
 
 from symofros.base.arrays import Array
 from symofros.description.values import Term, Value
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 from symofros.expr.expression import evaluate
 
 Kind = Literal["rectangle", "ellipse", "tube"]
@@ -68,12 +68,10 @@ class ShearShape:
         if outside.any():
             first = points[int(np.argmax(outside))]
             raise DescriptionError(
-                Problem(
-                    "section: shear stress outside of it",
-                    f"the point ({first[0]:g}, {first[1]:g}) m",
-                    f"points lie on the {self.kind} of {a:g} and {b:g} m",
-                    "state points on the section",
-                )
+                "section: shear stress outside of it",
+                f"the point ({first[0]:g}, {first[1]:g}) m",
+                f"points lie on the {self.kind} of {a:g} and {b:g} m",
+                "state points on the section",
             )
         along_y, along_z, torque = loads.reshape(-1, 3).T
         of_shape = np.stack([*(R @ np.stack([along_y, along_z])), torque])

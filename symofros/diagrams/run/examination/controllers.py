@@ -49,13 +49,7 @@ Rerun = Callable[[RerunSpan], Sequence[Array] | None]
 
 
 def blamed(outcome: Outcome, resolved: Resolved, again: Rerun) -> Outcome:
-    """An outcome that names the sampled controller where one drives the motion apart.
-
-    Args:
-        outcome: Outcome as of the motion alone.
-        resolved: The diagram.
-        again: Repeats a span of the run.
-    """
+    """An outcome that names the sampled controller where one drives the motion apart."""
     if outcome.kind not in ("diverged", "beyond theory"):
         return outcome
     for name in _controllers(resolved.wired):
@@ -114,13 +108,7 @@ def _held(resolved: Resolved, name: str, span: RerunSpan) -> RerunSpan:
 
 
 def _is_its_own(resolved: Resolved, states: Sequence[Array], held: Sequence[Array] | None) -> bool:
-    """Whether the motion grows, and by at most half of the exponent where the output of a block is held.
-
-    Args:
-        resolved: The diagram.
-        states: Records of the end of the run.
-        held: Records of it with the output held.
-    """
+    """Whether the motion grows, and by at most half of the exponent where the output of a block is held."""
     if held is None or len(held[0]) < len(states[0]):
         return False  # It ends sooner without the block.
     _, grown = _jolts(resolved, states[2])

@@ -99,13 +99,7 @@ def _without_end(ended: Ended, notes: tuple[str, ...]) -> Outcome:
 
 
 def diagnose(ended: Ended, bendings: Sequence[BeamBending], again: Rerun) -> tuple[Outcome, Resolution]:
-    """How a run ended, and how well its fixed steps resolve the modes of its parts.
-
-    Args:
-        ended: The run.
-        bendings: Bending of its beams.
-        again: Repeats a part of the run.
-    """
+    """How a run ended, and how well its fixed steps resolve the modes of its parts."""
     loop, status, t = ended.loop, ended.recorded.status, ended.t
     left = joint_limit_notes(ended.resolved, *ended.states[:3])
     undecided = (note for stepper in loop.parts for note in event_notes(stepper.run, stepper.events))

@@ -20,10 +20,6 @@ def posture_notes(run: Examined, signal: Signals) -> list[str]:
 
     Where constraints engage or release, their rank changes at any posture: such diagrams are not looked at. Of
     mechanisms with prescribed motions, which are signals here, the records alone are.
-
-    Args:
-        run: Run.
-        signal: Signals at its records.
     """
     layout, (t, q, v) = run.layout, run.states[:3]
     models, pieces = run.energies.resolved.wired.models, run.energies.resolved.pieces

@@ -28,10 +28,6 @@ def choose_signs(graph: Graph, rows: Rows) -> dict[int, Signs]:
     They are sums modulo 2 of unknowns, one for each product with a number, whose sign is free. A sum of nodes equates
     two of them; where that contradicts others, its second term has signs of its own.
 
-    Args:
-        graph: Graph of the program.
-        rows: Nodes that correspond.
-
     Returns:
         Signs of each row, that of the first lane +1, keyed by its first node.
     """

@@ -93,11 +93,7 @@ class LimbVector:
         return f"{vector_name(self.key)}[{lane}]"
 
     def lines(self, text: Callable[[Edge], str]) -> list[str]:
-        """The line that defines it.
-
-        Args:
-            text: Text of a scalar edge.
-        """
+        """The line that defines it."""
         return [f"    const {TYPES[self.width]} {vector_name(self.key)} = {self._operation(text)};"]
 
     def load_line(self, array: str, index: int) -> str:

@@ -271,13 +271,7 @@ class SectionFrames(BeamEquations):
         return self.combined(self.strains.sections.from_root(xi), self.partial_tangents[i]).scaled(self.along.L)
 
     def angular_rates(self, w: Vec3, alpha: Vec3, speeds: Sequence[Edge]) -> list[tuple[Vec3, Vec3]]:
-        """Angular velocity of each section in the world, and its rate at constant speeds, in B (11).
-
-        Args:
-            w: Angular velocity of the root.
-            alpha: Angular acceleration of the root.
-            speeds: Rates of the strain coordinates.
-        """
+        """Angular velocity of each section in the world, and its rate at constant speeds, in B (11)."""
         if self.axis is not None:
             spins = [self.spin(section, speeds) for section in self.sections]
             return [(w + spin, alpha + w.cross(spin)) for spin in spins]

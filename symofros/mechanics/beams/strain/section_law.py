@@ -35,12 +35,7 @@ class SectionLaw:
 
 
 def section_law(beam: Beam, counted: Collection[int]) -> SectionLaw:
-    """The law of a rod's sections.
-
-    Args:
-        beam: The rod.
-        counted: Strains that have functions.
-    """
+    """The law of a rod's sections."""
     free = [k for k in range(TURNING, _STRAINS) if k not in counted]
     K = reduce(_swept, free, _by_matrix(beam)) if beam.stiffness else _by_centers(beam, counted)
     kept = sorted(counted)

@@ -116,12 +116,7 @@ class Turn:
         return R.times(self.vector)
 
     def spinning(self, start: Mat3, end: Mat3) -> Mat3:
-        """Matrix T = R D of (9), by (9a), from rates of the rotation vector to the angular velocity in the axes of B.
-
-        Args:
-            start: Rotation R of the first section.
-            end: Rotation of the second section.
-        """
+        """Matrix T = R D of (9), by (9a), from rates of the rotation vector to the angular velocity in B."""
         g, h = self.vector.g, self.half[0]
         share = g.mul(self.factor, g.sub(self._slope, g.mul(h, g.mul(h, h))))
         lengthwise = self.along(start).scaled(share)

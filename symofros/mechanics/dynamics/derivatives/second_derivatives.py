@@ -57,13 +57,7 @@ def by_two_speeds(kinematics: TreeKinematics, slopes: Matrix) -> Tensor:
 
 
 def bias_second_derivatives(kinematics: TreeKinematics, M: Matrix, by_mass: Tensor) -> Tensor:
-    """Derivatives of h by two speeds, which M determines (nv x nv x nv, eq. 11a).
-
-    Args:
-        kinematics: Kinematics of the tree.
-        M: Mass matrix.
-        by_mass: Its derivatives, `mass_matrix_derivatives`.
-    """
+    """Derivatives of h by two speeds, which M determines (nv x nv x nv, eq. 11a)."""
     g, nv = kinematics.g, kinematics.nv
     turning = [by_inputs(kinematics, coadjoint(kinematics, row), "v", nv) for row in M]
     tensor = [[[ZERO] * nv for _ in range(nv)] for _ in range(nv)]

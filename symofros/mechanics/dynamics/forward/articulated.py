@@ -276,13 +276,7 @@ class _Coupling:
 
 
 def _carried(link: MovingLink, body: ArticulatedBody, moving: ArticulatedBody) -> _Coupling:
-    """Coupling of the speeds that move a section of a beam, by the articulated body it carries (rods.md, eq. 19).
-
-    Args:
-        link: The section.
-        body: The section's articulated body.
-        moving: The same with the bias acceleration of the section in its bias.
-    """
+    """Coupling of the speeds that move a section of a beam, by the articulated body it carries (rods.md, eq. 19)."""
     partials = link.partial_velocities
     U = [body.inertia.times(Acceleration(partial.w, partial.v)) for partial in partials]
     direct = [[_power(partial, U_k) for U_k in U] for partial in partials]

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, vector
 from symofros.base.measures import ROTATION, TRANSLATION
-from symofros.errors import AssemblyError, Problem, UnknownNameError, did_you_mean
+from symofros.errors import AssemblyError, UnknownNameError, did_you_mean
 from symofros.runtime.constrained import (
     LARGEST_STEP,
     MIN_SIZE,
@@ -316,12 +316,10 @@ def _consistent_speeds(at: _Conditions, q: Array, wished: Array, free: Indices, 
     if np.any(np.abs(left) > 1e3 * bounds):
         worst = int(np.argmax(np.abs(left) / bounds))
         raise AssemblyError(
-            Problem(
-                f"model '{model.record.name}': no speeds keep it closed",
-                f"G v - b = {left[worst]:.3g} at '{model.names.constraints[worst]}'",
-                "the speeds that are held must allow G v = b",
-                "hold fewer speeds",
-            )
+            f"model '{model.record.name}': no speeds keep it closed",
+            f"G v - b = {left[worst]:.3g} at '{model.names.constraints[worst]}'",
+            "the speeds that are held must allow G v = b",
+            "hold fewer speeds",
         )
     return speeds
 
@@ -331,12 +329,10 @@ def _inverse(model: Model, G: Array, free: Indices) -> Array:
     if not np.all(np.isfinite(G)):
         worst = model.names.constraints[int(np.argmin(np.isfinite(G).all(axis=1)))]
         raise AssemblyError(
-            Problem(
-                f"model '{model.record.name}': can't be assembled from this guess",
-                f"'{worst}' has no finite derivative there",
-                "constraints are smooth near the guess; a disc that lies flat has no contact, for example",
-                "start from another guess",
-            )
+            f"model '{model.record.name}': can't be assembled from this guess",
+            f"'{worst}' has no finite derivative there",
+            "constraints are smooth near the guess; a disc that lies flat has no contact, for example",
+            "start from another guess",
         )
     measures = model.record.measures
     return pseudo_inverse(G, measures.of_speeds(free))
@@ -351,12 +347,10 @@ def free_speeds(model: Model, held: Collection[str]) -> Indices:
     for name in held:
         if name not in model.names.v:
             raise UnknownNameError(
-                Problem(
-                    f"held: no speed '{name}'",
-                    name,
-                    "held names speeds of the model",
-                    did_you_mean(name, model.names.v) or "see model.names.v",
-                )
+                f"held: no speed '{name}'",
+                name,
+                "held names speeds of the model",
+                did_you_mean(name, model.names.v) or "see model.names.v",
             )
     return np.array([i for i, name in enumerate(model.names.v) if name not in held], dtype=np.intp)
 
@@ -375,10 +369,8 @@ def _refuse(model: Model, first: Attempt, held: Collection[str], shifted: bool) 
     if shifted:
         also += f"; {len(SHIFTS) * ATTEMPTS} guesses near it do not close it either"
     raise AssemblyError(
-        Problem(
-            f"model '{model.record.name}': can't be assembled from this guess",
-            f"after {first.steps} steps phi = {first.phi[worst]:.3g} at '{model.names.constraints[worst]}'{also}",
-            f"|phi| <= {first.bounds[worst]:.2g}; either no configuration closes it, or the guess leads to none",
-            "start nearer, hold fewer coordinates, or check lengths",
-        )
+        f"model '{model.record.name}': can't be assembled from this guess",
+        f"after {first.steps} steps phi = {first.phi[worst]:.3g} at '{model.names.constraints[worst]}'{also}",
+        f"|phi| <= {first.bounds[worst]:.2g}; either no configuration closes it, or the guess leads to none",
+        "start nearer, hold fewer coordinates, or check lengths",
     )

@@ -5,7 +5,7 @@ from __future__ import annotations
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.errors import ActuationError, Problem
+from symofros.errors import ActuationError
 from symofros.runtime.constrained import STILL, residual_weights
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
@@ -48,12 +48,10 @@ def consistent_jacobian(
         if excess.max(initial=0.0) > 0.0:
             *index, row = (int(i) for i in np.unravel_index(int(np.argmax(excess)), excess.shape))
             raise ActuationError(
-                Problem(
-                    f"model '{model.record.name}': the motion violates its constraints{place_in_batch(tuple(index))}",
-                    f"{text.format(residual[(*index, row)])} at '{model.names.constraints[row]}'",
-                    "efforts are those of a motion with phi = 0, G v = b and G a = gamma",
-                    "q and v from sf.assemble or model.project; a from forward_dynamics, or with G a = gamma",
-                )
+                f"model '{model.record.name}': the motion violates its constraints{place_in_batch(tuple(index))}",
+                f"{text.format(residual[(*index, row)])} at '{model.names.constraints[row]}'",
+                "efforts are those of a motion with phi = 0, G v = b and G a = gamma",
+                "q and v from sf.assemble or model.project; a from forward_dynamics, or with G a = gamma",
             )
     return G
 

@@ -12,7 +12,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.base.rotations import normalized, quaternion_matrix
-from symofros.errors import AssemblyError, Problem
+from symofros.errors import AssemblyError
 from symofros.runtime.model import ArrayLike, Model
 
 
@@ -69,10 +69,8 @@ def refuse_opposite(model: Model, q: ArrayLike, u: ArrayLike | None = None, par:
         if worst < 0.0:
             angle = np.degrees(np.arccos(max(worst, -1.0)))
             raise AssemblyError(
-                Problem(
-                    f"model '{model.record.name}': closure '{closure}' is closed the wrong way round",
-                    f"axes that are to be parallel are {angle:.0f} degrees apart",
-                    "conditions on rotations hold up to a right angle from the closed posture",
-                    "start from a guess on the right side",
-                )
+                f"model '{model.record.name}': closure '{closure}' is closed the wrong way round",
+                f"axes that are to be parallel are {angle:.0f} degrees apart",
+                "conditions on rotations hold up to a right angle from the closed posture",
+                "start from a guess on the right side",
             )

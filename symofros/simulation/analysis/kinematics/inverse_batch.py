@@ -12,7 +12,7 @@ import numpy.typing as npt
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, real_array
-from symofros.errors import Problem, ShapeError
+from symofros.errors import ShapeError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending
 from symofros.runtime.calls import NativeMemory, together
 from symofros.runtime.manifold import at_unit_length
@@ -250,12 +250,10 @@ def _count(targets: Mapping[str, Target], q: ArrayLike | None) -> int:
     if guesses is not None and guesses.ndim == 2:
         return len(guesses)
     raise ShapeError(
-        Problem(
-            "inverse kinematics of a batch: no batch",
-            "one pose and one guess",
-            "positions (n, 3), rotations (n, 3, 3) or guesses (n, nq) say how many poses there are",
-            "sf.inverse_kinematics is for one pose",
-        )
+        "inverse kinematics of a batch: no batch",
+        "one pose and one guess",
+        "positions (n, 3), rotations (n, 3, 3) or guesses (n, nq) say how many poses there are",
+        "sf.inverse_kinematics is for one pose",
     )
 
 

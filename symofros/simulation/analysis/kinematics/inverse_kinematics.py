@@ -12,7 +12,7 @@ import numpy.typing as npt
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array
 from symofros.base.measures import ANGLE, LENGTH, Measures
-from symofros.errors import AssemblyError, Problem, SymofrosError
+from symofros.errors import AssemblyError, SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.constrained import pseudo_inverse
 from symofros.runtime.manifold import at_unit_length
@@ -216,12 +216,10 @@ def joint_motion(
         at = inverse_kinematics(model, target, q, par=par, tolerance=tolerance, starts=1 if i else STARTS)
         if not at.converged:
             raise AssemblyError(
-                Problem(
-                    f"model '{model.record.name}': frame '{frame}' can't follow",
-                    "; ".join([f"an error of {at.error:.3g} at sample {i}", *at.notes]),
-                    "every sample is within reach",
-                    "move the path, or start from another configuration",
-                )
+                f"model '{model.record.name}': frame '{frame}' can't follow",
+                "; ".join([f"an error of {at.error:.3g} at sample {i}", *at.notes]),
+                "every sample is within reach",
+                "move the path, or start from another configuration",
             )
         q = at.q
         J = model.frame_jacobian(frame, q, par=par)[:rows]
@@ -248,12 +246,10 @@ def _refuse_missed(what: str, sample: int, found: Array, wanted: Array) -> None:
         if missed > _MISSED * max(largest, _SLOW):
             units = "of linear ones" if part.start == 0 else "of angular ones"
             raise AssemblyError(
-                Problem(
-                    f"{what} can't be followed",
-                    f"missed by {missed:.3g} at sample {sample}, {units} that reach {largest:.3g}",
-                    "the joints can move the frame as it is to move, and rates belong to the positions",
-                    "mend the rates, leave rotations out, or keep away from singular postures",
-                )
+                f"{what} can't be followed",
+                f"missed by {missed:.3g} at sample {sample}, {units} that reach {largest:.3g}",
+                "the joints can move the frame as it is to move, and rates belong to the positions",
+                "mend the rates, leave rotations out, or keep away from singular postures",
             )
 
 
@@ -265,12 +261,10 @@ def check_starts(starts: int) -> None:
     """
     if not 1 <= starts <= _MAX_STARTS:
         raise SymofrosError(
-            Problem(
-                "inverse kinematics: starts is out of range",
-                str(starts) if abs(starts) < 10 * _MAX_STARTS else "a number far outside of it",
-                f"the guess is the first start, and {_MAX_STARTS} are the most",
-                "leave it out, or give 1 for the guess alone",
-            )
+            "inverse kinematics: starts is out of range",
+            str(starts) if abs(starts) < 10 * _MAX_STARTS else "a number far outside of it",
+            f"the guess is the first start, and {_MAX_STARTS} are the most",
+            "leave it out, or give 1 for the guess alone",
         )
 
 
@@ -288,10 +282,8 @@ def _refuse_nan(task: Task, error: Array) -> None:
     if np.all(np.isfinite(error)):
         return
     raise SymofrosError(
-        Problem(
-            f"model '{task.model.record.name}': the error of the targets is not a number",
-            f"{error[~np.isfinite(error)][0]} at the guess",
-            "poses and constraints are finite at the guess",
-            "check the inputs and parameters that are passed, or start from another guess",
-        )
+        f"model '{task.model.record.name}': the error of the targets is not a number",
+        f"{error[~np.isfinite(error)][0]} at the guess",
+        "poses and constraints are finite at the guess",
+        "check the inputs and parameters that are passed, or start from another guess",
     )

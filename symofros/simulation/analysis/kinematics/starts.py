@@ -10,7 +10,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.base.names import coordinate_of, speed_of
-from symofros.errors import AssemblyError, Problem
+from symofros.errors import AssemblyError
 from symofros.runtime.manifold import at_unit_length
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.kinematics.assembly import assemble
@@ -211,13 +211,11 @@ def changes(
         f"{name} = {old:g} would be {_shown(new)}, {abs(new - old):.3g} off" for name, (old, new) in changed.items()
     )
     raise AssemblyError(
-        Problem(
-            f"model '{model}': the stated start does not meet the constraints",
-            "nearest found: " + "; ".join(found_words),
-            "what is stated of a start is kept; what is not follows from the constraints",
-            "leave out what shall follow, or state what is near: "
-            + ", ".join(f"{name} = {_shown(new)}" for name, (_, new) in changed.items()),
-        )
+        f"model '{model}': the stated start does not meet the constraints",
+        "nearest found: " + "; ".join(found_words),
+        "what is stated of a start is kept; what is not follows from the constraints",
+        "leave out what shall follow, or state what is near: "
+        + ", ".join(f"{name} = {_shown(new)}" for name, (_, new) in changed.items()),
     )
 
 

@@ -13,7 +13,7 @@ import numpy.typing as npt
 from symofros.base.arguments import CheckedCalls
 from symofros.base.arrays import Array, real_array, vector
 from symofros.base.measures import ANGLE, LENGTH, Measures
-from symofros.errors import Problem, ShapeError, SymofrosError
+from symofros.errors import ShapeError, SymofrosError
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.kinematics.posture_solver import POSE, PostureSolver, Wish, settled, solver_of
 from symofros.simulation.analysis.states import given_inputs
@@ -139,7 +139,7 @@ def finite_array(what: str, values: npt.ArrayLike, shape: tuple[int | str, ...],
     else:
         seen = f"{array[~np.isfinite(array)][0]} among its numbers" if fits else f"shape {array.shape}"
     size = f"({', '.join(map(str, shape))}{',' if len(shape) == 1 else ''})"
-    raise ShapeError(Problem(f"{what} does not fit", seen, f"finite real numbers of shape {size}", remedy))
+    raise ShapeError(f"{what} does not fit", seen, f"finite real numbers of shape {size}", remedy)
 
 
 def rotations_checked(what: str, R: Array) -> Array:
@@ -157,12 +157,10 @@ def rotations_checked(what: str, R: Array) -> Array:
         at = f" of sample {bad[0]}" if R.ndim > 2 else ""
         error, determinant = np.ravel(error)[bad[0]], np.ravel(determinant)[bad[0]]
         raise SymofrosError(
-            Problem(
-                f"{what}: the matrix{at} is not a rotation",
-                f"|R R^T - 1| = {error:.2g}, determinant {determinant:.3g}",
-                f"R R^T = 1 within {ROTATION_TOLERANCE:g} and determinant +1",
-                "give columns of unit length that form a right-handed frame, to seven digits or more",
-            )
+            f"{what}: the matrix{at} is not a rotation",
+            f"|R R^T - 1| = {error:.2g}, determinant {determinant:.3g}",
+            f"R R^T = 1 within {ROTATION_TOLERANCE:g} and determinant +1",
+            "give columns of unit length that form a right-handed frame, to seven digits or more",
         )
     return np.asarray(U @ Vt)
 
@@ -185,12 +183,10 @@ def wishes_of(targets: Mapping[str, Target]) -> tuple[Wish, ...]:
     for frame, target in targets.items():
         if not isinstance(target, Target) or (target.position is None and target.rotation is None):
             raise SymofrosError(
-                Problem(
-                    f"target of frame '{frame}': says nothing of where the frame is wanted",
-                    f"{target!r:.80}",
-                    "a target is a Target with a position, a rotation or both",
-                    "write Target(position), Target(rotation=R) or Target(position, R)",
-                )
+                f"target of frame '{frame}': says nothing of where the frame is wanted",
+                f"{target!r:.80}",
+                "a target is a Target with a position, a rotation or both",
+                "write Target(position), Target(rotation=R) or Target(position, R)",
             )
         wishes.append(Wish(frame, target.position is not None, target.rotation is not None))
     return tuple(wishes)

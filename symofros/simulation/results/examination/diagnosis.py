@@ -203,12 +203,7 @@ def _stuck(end: _End) -> Outcome | None:
 
 
 def too_long(run: ExaminedRun, outcome: Outcome) -> Outcome:
-    """An outcome that says of fixed steps that they are too long, where shorter ones go on; else the same.
-
-    Args:
-        run: The run.
-        outcome: It ends as singular, or unsolved.
-    """
+    """An outcome that says of fixed steps that they are too long, where shorter ones go on; else the same."""
     said = shorter_steps_that_go_on(run, outcome.t)
     if not said:
         return outcome

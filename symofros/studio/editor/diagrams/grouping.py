@@ -6,7 +6,7 @@ import re
 from collections.abc import Iterator, Sequence
 from typing import Any, NamedTuple
 
-from symofros.studio.editor.editing.data_edits import Edit, conditions_of, refusal, section_of
+from symofros.studio.editor.editing.data_edits import Edit, EditError, conditions_of, section_of
 
 Json = dict[str, Any]
 
@@ -46,15 +46,17 @@ def grouped(data: Any, name: str, file: str, chosen: Sequence[str]) -> Grouping:
     for key in chosen:
         section, _, one = key.partition("/")
         if section not in sections or one not in sections[section]:
-            raise refusal("nothing to group", f"'{key[:50]}'", "blocks and parts of the diagram", "choose some of them")
+            raise EditError(
+                "nothing to group", f"'{key[:50]}'", "blocks and parts of the diagram", "choose some of them"
+            )
         inner[one] = section
     if not inner:
-        raise refusal("nothing to group", "no block", "a subsystem has blocks", "choose some on the canvas")
+        raise EditError("nothing to group", "no block", "a subsystem has blocks", "choose some on the canvas")
     if name in sections["blocks"] or name in sections["parts"]:
-        raise refusal(f"'{name}' is taken", "a block or a part of that name", "names are unique", "choose another")
+        raise EditError(f"'{name}' is taken", "a block or a part of that name", "names are unique", "choose another")
     if section_of(data, "wires"):
         what, rule = "the diagram has wires of its own", "grouping follows the inputs that blocks state"
-        raise refusal(what, "a section 'wires'", rule, "state them as inputs of the blocks, in the text")
+        raise EditError(what, "a section 'wires'", rule, "state them as inputs of the blocks, in the text")
     return _Group(data, sections, inner, name, file).made()
 
 
@@ -118,7 +120,7 @@ class _Group:
                 yield Edit("set", ("outlets", outlet), f"{self.name}.{self.leaves(source)}")
         for inlet in section_of(self.data, "inlets"):
             what, rule = "the diagram has inlets of its own", "grouping follows the inputs that blocks state"
-            raise refusal(what, f"'{inlet}'", rule, "group before inlets are stated, or edit the text")
+            raise EditError(what, f"'{inlet}'", rule, "group before inlets are stated, or edit the text")
         for path, text in _plotted(section_of(self.data, "simulation").get("plots"), ("simulation", "plots")):
             found = _SIGNAL.match(text)
             if found and found[1] in self.inner:

@@ -12,7 +12,7 @@ from symofros.diagrams.external_block import ExternalBlock, NativeCode
 from symofros.diagrams.wiring import Wired
 from symofros.errors import Problem
 from symofros.studio.editor.document.workspace import FileError, digest
-from symofros.studio.editor.editing.data_edits import EditError, refusal
+from symofros.studio.editor.editing.data_edits import EditError
 
 MAX_STATED = 200  # Characters of what a file states of itself.
 
@@ -49,7 +49,7 @@ def _seen(file: str) -> _Seen:
         data, owner = Path(file).read_bytes(), _owner(file)
     except OSError as error:
         rule, remedy = "native code is read to be asked for", "name another file"
-        raise FileError(Problem(f"'{file}' can't be read", error.strerror or "", rule, remedy)) from None
+        raise FileError(f"'{file}' can't be read", error.strerror or "", rule, remedy) from None
     return _Seen(digest(data), len(data), owner)
 
 
@@ -103,14 +103,14 @@ class Consents:
         """
         pairs = [_pair(each) for each in given] if isinstance(given, list) else []
         if not pairs:
-            raise refusal("consent to nothing", f"{given!r:.100}", "a list of paths and digests", "reload the page")
+            raise EditError("consent to nothing", f"{given!r:.100}", "a list of paths and digests", "reload the page")
         for path, stated in pairs:
             if path not in {each.file for each in code.values()}:
                 rule = "consent is asked for files that the open diagram runs"
-                raise refusal("consent to another file", f"{path!r:.100}", rule, "run the diagram again")
+                raise EditError("consent to another file", f"{path!r:.100}", rule, "run the diagram again")
             if _seen(path).digest != stated:
                 rule = "consent is to the bytes that were seen"
-                raise refusal(f"'{path}' has changed meanwhile", "other bytes", rule, "run the diagram again")
+                raise EditError(f"'{path}' has changed meanwhile", "other bytes", rule, "run the diagram again")
         self._given.update(pairs)
 
 

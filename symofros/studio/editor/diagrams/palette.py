@@ -62,6 +62,7 @@ def _entry(kind: str, block: type[Block]) -> Json:
         "title": kind.replace("_", " "),
         "name": kind,
         "help": (inspect.getdoc(block) or "").split("\n")[0],
+        "page": f"docs/blocks.md, {block.__name__}",
         "about": (inspect.getdoc(block) or "").partition("\n\nAttributes:")[0],
         "template": {"kind": kind, **template},
     }

@@ -9,7 +9,7 @@ from typing import Any, NamedTuple
 from symofros.errors import Problem, SymofrosError
 from symofros.studio.editor.document.analysis import analyse
 from symofros.studio.editor.document.meaning import Analysis
-from symofros.studio.editor.editing.data_edits import EditError, refusal
+from symofros.studio.editor.editing.data_edits import EditError
 
 BOM = "\ufeff"
 # What is read again after each edit; a file of a thousand bodies is a third of it.
@@ -152,11 +152,11 @@ def refuse_text(text: Any) -> str:
         EditError: Not a text, too large, or with half a surrogate pair.
     """
     if not isinstance(text, str):
-        raise refusal("the text is not a text", type(text).__name__, "a document is text", "send a string")
+        raise EditError("the text is not a text", type(text).__name__, "a document is text", "send a string")
     try:
         size = len(text.encode("utf-8"))
     except UnicodeEncodeError:
-        raise refusal(
+        raise EditError(
             "the text holds half a character", "a lone surrogate", "files are in UTF-8", "remove it"
         ) from None
     if size > MAX_TEXT:

@@ -9,7 +9,7 @@ from typing import Any
 
 from symofros.harness import folder_of
 from symofros.studio.editor.document.workspace import FileError, Workspace, read_text, write
-from symofros.studio.editor.editing.data_edits import refusal
+from symofros.studio.editor.editing.data_edits import EditError
 
 Json = dict[str, Any]
 
@@ -132,7 +132,7 @@ def take_example(name: str, workspace: Workspace) -> tuple[str, str]:
     example = next((each for each in EXAMPLES if each.name == name), None)
     if example is None:
         known = ", ".join(each.name for each in EXAMPLES)
-        raise refusal("no such example", f"'{name[:50]}'", f"one of {known}", "choose one of them")
+        raise EditError("no such example", f"'{name[:50]}'", f"one of {known}", "choose one of them")
     folder = folder_of("reference_models")
     missing = {}
     for model in example.models:
@@ -141,7 +141,7 @@ def take_example(name: str, workspace: Workspace) -> tuple[str, str]:
             missing[target] = content
         elif read_text(target)[0] != content:
             raise FileError(
-                refusal(
+                EditError(
                     f"the example '{name}' needs '{model}'",
                     "another file of that name in this folder",
                     "an example overwrites nothing",

@@ -19,7 +19,7 @@ from symofros.studio.editor.document.parts.parts import insertion
 from symofros.studio.editor.document.parts.parts_library import Library
 from symofros.studio.editor.document.storage import EMPTY, Storage
 from symofros.studio.editor.document.workspace import FileError, Workspace, identifier, read_text, write
-from symofros.studio.editor.editing.data_edits import four_parts, refusal
+from symofros.studio.editor.editing.data_edits import EditError, four_parts
 from symofros.studio.editor.editing.requests import edits_of, fields_of, text_of
 from symofros.studio.editor.editing.yaml_edits import with_references
 from symofros.studio.editor.editing.yaml_rendering import block
@@ -71,7 +71,7 @@ class Session:
         if chosen not in known:
             listed = ", ".join(known) or "none"
             what, rule = "no mechanism to show", f"blocks that move one: {listed}"
-            raise refusal(what, f"'{block[:50]}'", rule, "choose one of them" if known else "add forward dynamics")
+            raise EditError(what, f"'{block[:50]}'", rule, "choose one of them" if known else "add forward dynamics")
         return known[chosen]
 
     def as_json(self) -> Json:
@@ -141,14 +141,14 @@ class Session:
         file = self.workspace.inside(text_of(body, "path"))
         kind = text_of(body, "kind") or "mechanism"
         if kind not in EMPTY:
-            raise refusal("no such kind of document", f"'{kind[:50]}'", f"one of {', '.join(EMPTY)}", "choose one")
+            raise EditError("no such kind of document", f"'{kind[:50]}'", f"one of {', '.join(EMPTY)}", "choose one")
         self._leave(body, lambda: self.storage.create(file, kind))
 
     def enter(self, body: Json) -> None:
         """Go into a model or a part of the open diagram, to come back later; its undo steps are kept meanwhile."""
         self.document.expect(body.get("revision"))
         if len(self._outer) >= MAX_DEPTH:
-            raise refusal("the way back is too long", f"{MAX_DEPTH} documents", "at most that many", "go back first")
+            raise EditError("the way back is too long", f"{MAX_DEPTH} documents", "at most that many", "go back first")
         file = self.workspace.inside((self.document.file.parent / text_of(body, "path")).as_posix())
         read_text(file)
         inner = Storage(self.workspace, file, self.storage.next_revision)
@@ -159,7 +159,9 @@ class Session:
         """Return to the diagram that this document was opened from; `discard`: unsaved changes here are given up."""
         self.document.expect(body.get("revision"))
         if not self._outer:
-            raise refusal("there is no way back", "the outermost document", "one goes back from inside", "open a file")
+            raise EditError(
+                "there is no way back", "the outermost document", "one goes back from inside", "open a file"
+            )
         if body.get("discard") is True:
             self.storage.forget()
         inner, self.storage = self.storage, self._outer.pop()
@@ -204,7 +206,7 @@ class Session:
         self.document.expect(body.get("revision"))
         name, blocks = text_of(body, "name") or "", body.get("blocks")
         if not isinstance(blocks, list) or not all(isinstance(item, str) for item in blocks):
-            raise refusal("blocks of the subsystem", f"{blocks!r:.100}", "a list of ids", "choose some")
+            raise EditError("blocks of the subsystem", f"{blocks!r:.100}", "a list of ids", "choose some")
         folder = self.document.file.parent
         stem = identifier(name)
         file = next(one for n in range(1, 1000) if not (one := folder / f"{stem}{n if n > 1 else ''}.yaml").exists())
@@ -279,7 +281,7 @@ class Session:
         is_diagram = document.analysis.diagram is not None
         jobs = DIAGRAM_JOBS if is_diagram else MECHANISM_JOBS
         if kind not in jobs or not isinstance(options, dict):
-            raise refusal(
+            raise EditError(
                 "no such job of this document",
                 f"{kind!r:.50}",
                 f"one of {', '.join(jobs)}; options are a mapping",

@@ -56,11 +56,6 @@ class Storage:
     def __init__(self, workspace: Workspace, file: Path | None, revision: int = 1) -> None:
         """Open a file; begin it if it is not there; None: begin one without a name.
 
-        Args:
-            workspace: Folder that the file is in.
-            file: File to open.
-            revision: Revision that its document begins with.
-
         Raises:
             FileError: It can't be read.
         """
@@ -106,9 +101,7 @@ class Storage:
         if file.exists() or not file.parent.is_dir():
             obstacle = "a file of that name" if file.exists() else "no such folder"
             raise FileError(
-                Problem(
-                    f"'{file.name}' can't be begun", obstacle, "a new file has a name of its own", "choose another name"
-                )
+                f"'{file.name}' can't be begun", obstacle, "a new file has a name of its own", "choose another name"
             )
         self.begin(file, kind)
 
@@ -148,7 +141,7 @@ class Storage:
             file = self.workspace.root / f"{stem}{n if n > 1 else ''}.yaml"
             if not file.exists() and (stem == "untitled" or not autosave_of(file).exists()):
                 return file
-        raise FileError(Problem("no free name", f"999 files '{stem}'", "a document has a file name", "give one"))
+        raise FileError("no free name", f"999 files '{stem}'", "a document has a file name", "give one")
 
     # While it is open.
 
@@ -276,10 +269,8 @@ class Storage:
         if found is None or found.text == self.document.text:
             return
         raise FileError(
-            Problem(
-                f"'{file.name}' has unsaved work of its own",
-                f"'{autosave_of(file).name}'",
-                "a document is saved over no unsaved work on another file",
-                f"choose another name, or open '{file.name}' and save or discard that work",
-            )
+            f"'{file.name}' has unsaved work of its own",
+            f"'{autosave_of(file).name}'",
+            "a document is saved over no unsaved work on another file",
+            f"choose another name, or open '{file.name}' and save or discard that work",
         )

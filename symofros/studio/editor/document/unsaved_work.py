@@ -7,7 +7,6 @@ from contextlib import suppress
 from pathlib import Path
 from typing import NamedTuple
 
-from symofros.errors import Problem
 from symofros.studio.editor.document.workspace import (
     FileError,
     autosave_of,
@@ -84,12 +83,10 @@ class UnsavedWork:
         if not self._is_others():
             return
         raise FileError(
-            Problem(
-                f"unsaved work on '{self.file.name}' is not kept",
-                "another editor keeps unsaved work there",
-                "unsaved work of another editor is not overwritten",
-                "Save it under another name, or close the other editor",
-            )
+            f"unsaved work on '{self.file.name}' is not kept",
+            "another editor keeps unsaved work there",
+            "unsaved work of another editor is not overwritten",
+            "Save it under another name, or close the other editor",
         )
 
     def _is_others(self) -> bool:

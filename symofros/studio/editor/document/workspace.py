@@ -12,7 +12,7 @@ from symofros.base.stored import write_atomically
 from symofros.description import MODEL_SUFFIXES, YAML_SUFFIXES, kind_of
 from symofros.description.yaml import MAX_BYTES
 from symofros.diagrams.files.kind import is_diagram
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 
 MAX_LISTED = 1000
 MAX_SCANNED = 20_000
@@ -22,11 +22,6 @@ MAX_NAME = 200
 
 class FileError(SymofrosError):
     """A file that can't be read or written."""
-
-
-def _refusal(what: str, found: str, rule: str, remedy: str) -> FileError:
-    """The error of a file, by the parts of its problem."""
-    return FileError(Problem(what, found, rule, remedy))
 
 
 class Workspace:
@@ -57,24 +52,24 @@ class Workspace:
                 p.startswith(".") for p in path.relative_to(self.root).parts
             )
             if not text or len(text) > 1000 or not text.isprintable() or hidden or not path.is_relative_to(self.root):
-                raise _refusal(
+                raise FileError(
                     f"'{text[:100]}' is not in the workspace",
                     text[:100] or "nothing",
                     rule,
                     f"choose a place in '{self.root.name}'",
                 )
         except (OSError, ValueError, RuntimeError) as error:  # A NUL character, or a loop of links.
-            raise _refusal(f"'{text[:100]!r}' is not a path", str(error)[:100], rule, "choose another") from None
+            raise FileError(f"'{text[:100]!r}' is not a path", str(error)[:100], rule, "choose another") from None
         longest = max((len(os.fsencode(part)) for part in path.parts), default=0)
         if longest > MAX_NAME:
-            raise _refusal(
+            raise FileError(
                 f"'{text[:100]}' has too long a name",
                 f"a part of {longest} bytes",
                 f"names have at most {MAX_NAME} bytes, since files beside it have longer ones",
                 "shorten it",
             )
         if suffixes and path.suffix.lower() not in suffixes:
-            raise _refusal(
+            raise FileError(
                 f"'{text[:100]}' has another suffix",
                 path.suffix or "none",
                 f"one of {', '.join(suffixes)}",
@@ -118,13 +113,13 @@ def read_text(path: Path) -> tuple[str, bytes]:
     """
     try:
         if not path.is_file():
-            raise _refusal(
+            raise FileError(
                 f"'{path.name}' can't be opened", kind_of(path), "a description is a regular file", "choose another"
             )
         with path.open("rb") as stream:
             data = stream.read(MAX_BYTES + 1)
         if len(data) > MAX_BYTES:
-            raise _refusal(
+            raise FileError(
                 f"'{path.name}' is too large",
                 f"more than {MAX_BYTES} bytes",
                 "a description is at most 4 MiB long",
@@ -132,14 +127,16 @@ def read_text(path: Path) -> tuple[str, bytes]:
             )
         return data.decode("utf-8-sig"), data
     except OSError as error:
-        raise _refusal(
+        raise FileError(
             f"'{path.name}' can't be read",
             error.strerror or "unreadable",
             "the file is readable",
             "check its permissions",
         ) from None
     except UnicodeDecodeError:
-        raise _refusal(f"'{path.name}' is not UTF-8", "other bytes", "files are in UTF-8", "save it as UTF-8") from None
+        raise FileError(
+            f"'{path.name}' is not UTF-8", "other bytes", "files are in UTF-8", "save it as UTF-8"
+        ) from None
 
 
 def write(path: Path, content: str | bytes) -> None:
@@ -152,7 +149,7 @@ def write(path: Path, content: str | bytes) -> None:
         write_atomically(path, content)
     except (OSError, UnicodeEncodeError) as error:
         reason = getattr(error, "strerror", None) or str(error)[:100]
-        raise _refusal(
+        raise FileError(
             f"'{path.name}' can't be written",
             reason,
             "the folder is there and can be written to",
@@ -167,7 +164,7 @@ def read_own(path: Path) -> str:
         FileError: Not there, a link, or as `read_text`.
     """
     if path.is_symlink():
-        raise _refusal(f"'{path.name}' is a link", "a link", "the editor's own files are files", "remove it")
+        raise FileError(f"'{path.name}' is a link", "a link", "the editor's own files are files", "remove it")
     return read_text(path)[0]
 
 

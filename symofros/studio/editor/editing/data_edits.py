@@ -39,11 +39,6 @@ class EditError(SymofrosError):
     """An edit that can't be applied."""
 
 
-def refusal(what: str, found: str, rule: str, remedy: str) -> EditError:
-    """The error of a request that can't be met, by the parts of its problem."""
-    return EditError(Problem(what, found, rule, remedy))
-
-
 @dataclass(frozen=True)
 class Edit:
     """One change.
@@ -136,7 +131,7 @@ def place(path: Path, keys: Sequence[str], key: str) -> int:
 def fault(path: Path, found: str, rule: str, remedy: str) -> EditError:
     """The error of an edit at a path."""
     shown = " / ".join(map(str, path))[:200] or "the document"
-    return EditError(Problem(f"{shown}: the edit can't be applied", found, rule, remedy))
+    return EditError(f"{shown}: the edit can't be applied", found, rule, remedy)
 
 
 def four_parts(problem: Problem) -> dict[str, str]:

@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any, NamedTuple, get_args
 
 from symofros.description.yaml import MAX_DEPTH, scalar_of
-from symofros.errors import Problem
 from symofros.studio.editor.editing.data_edits import Edit, EditError, Op, Path
 from symofros.studio.editor.editing.yaml_rendering import WHOLE, Typed
 
@@ -120,4 +119,4 @@ def _typed(text: Any) -> Any:
 
 
 def _malformed(what: str, found: Any, rule: str) -> EditError:
-    return EditError(Problem(f"{what} of the request is malformed", f"{found!r:.100}", rule, "reload the page"))
+    return EditError(f"{what} of the request is malformed", f"{found!r:.100}", rule, "reload the page")

@@ -10,7 +10,7 @@ import numpy as np
 
 from symofros.description import System
 from symofros.errors import SymofrosError
-from symofros.studio.editor.editing.data_edits import EditError, refusal
+from symofros.studio.editor.editing.data_edits import EditError
 from symofros.studio.editor.jobs.run_states import states_of
 from symofros.studio.viewer.record import record
 
@@ -37,17 +37,17 @@ def film_of(system: System | None, result: Json, suffix: str, exaggeration: str,
             that is not installed.
     """
     if suffix not in MEDIA_TYPES:
-        raise refusal("no such film", f"'{suffix[:20]}'", f"one of {', '.join(MEDIA_TYPES)}", "choose one of them")
+        raise EditError("no such film", f"'{suffix[:20]}'", f"one of {', '.join(MEDIA_TYPES)}", "choose one of them")
     if system is None:
         rule = "a film is of the model as it was simulated"
-        raise refusal("the model has changed since", "an outdated run", rule, "simulate again, or undo the change")
+        raise EditError("the model has changed since", "an outdated run", rule, "simulate again, or undo the change")
     states = states_of(result)
     t, q = np.asarray(states.t), np.asarray(states.q)
     until = int(np.argmin([*np.isfinite(q).all(axis=1), False]))
     factor, pace = _number("exaggeration", exaggeration), _number("speed", speed)
     if until > 0 and pace > 0.0 and (t[until - 1] - t[0]) / pace > MAX_SECONDS:
         rule = f"a film of the page takes {MAX_SECONDS:g} s at most"
-        raise refusal("the film is too long", f"{(t[until - 1] - t[0]) / pace:g} s", rule, "raise the speed")
+        raise EditError("the film is too long", f"{(t[until - 1] - t[0]) / pace:g} s", rule, "raise the speed")
     shown = states._replace(t=t[:until], q=q[:until], u=np.asarray(states.u)[:until])
     with TemporaryDirectory() as folder:
         file = Path(folder) / f"film.{suffix}"
@@ -62,4 +62,6 @@ def _number(name: str, text: str) -> float:
     try:
         return float(text)
     except ValueError:
-        raise refusal(f"{name} of the request is no number", f"'{text[:20]}'", "a number", "reload the page") from None
+        raise EditError(
+            f"{name} of the request is no number", f"'{text[:20]}'", "a number", "reload the page"
+        ) from None

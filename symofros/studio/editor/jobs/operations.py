@@ -20,7 +20,7 @@ from symofros.base.names import quoted, speed_column, symbol_of
 from symofros.base.routes import Choice
 from symofros.compiler import Compilation, compile_system
 from symofros.description.yaml import write_yaml
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.exports.folder import check_same
 from symofros.harness import command_line
 from symofros.mechanics.topology import SpanningTree, build_tree
@@ -124,12 +124,10 @@ def cross_check(request: Json, tell: Tell) -> Json:
         verdict = json.loads(run.stdout.strip().splitlines()[-1])
     except (ValueError, IndexError):
         raise SymofrosError(
-            Problem(
-                "cross-check: the harness gave no verdict",
-                run.stderr.strip()[-1000:],
-                "it prints its comparisons as JSON",
-                "run `symofros check` on the saved file",
-            )
+            "cross-check: the harness gave no verdict",
+            run.stderr.strip()[-1000:],
+            "it prints its comparisons as JSON",
+            "run `symofros check` on the saved file",
         ) from None
     rows = [
         {

@@ -8,7 +8,7 @@ import threading
 from collections.abc import Callable
 from typing import Any
 
-from symofros.studio.editor.editing.data_edits import refusal
+from symofros.studio.editor.editing.data_edits import EditError
 from symofros.studio.editor.jobs.request import ORDERS
 from symofros.studio.editor.jobs.worker_process import WorkerProcess
 
@@ -60,7 +60,7 @@ class Job:
         if chosen not in motions:
             actual = f"block '{block[:50]}' of {', '.join(motions)}" if motions else f"{self.kind}, {self.state}"
             rule = "a motion is that of a simulation, an analysis, or of a block of a run that moves a mechanism"
-            raise refusal(f"job {self.key} has no such motion", actual, rule, "simulate or run it first")
+            raise EditError(f"job {self.key} has no such motion", actual, rule, "simulate or run it first")
         motion: Json = motions[chosen]
         return motion
 
@@ -85,18 +85,13 @@ class Jobs:
     def start(self, kind: str, request: Json, revision: int = 0) -> Job:
         """Start a worker.
 
-        Args:
-            kind: Kind of job, a key of tasks.TASKS.
-            request: Request that the worker process receives.
-            revision: Revision of the document.
-
         Raises:
             EditError: One of that kind is running.
         """
         with self._lock:
             running = [job for job in self._jobs.values() if job.kind == kind and job.state == "running"]
             if running:
-                raise refusal(
+                raise EditError(
                     f"{kind} is running already",
                     f"job {running[0].key}",
                     "one job of a kind runs at a time",
@@ -119,7 +114,7 @@ class Jobs:
             EditError: There is none, or none any more.
         """
         if key not in self._jobs:
-            raise refusal(
+            raise EditError(
                 f"no job '{key[:50]}'",
                 ", ".join(self._jobs) or "none",
                 f"the last {KEPT} jobs are kept",
@@ -135,7 +130,7 @@ class Jobs:
         """
         job = self.get(key)
         if order not in ORDERS:
-            raise refusal("no such order", f"{order!r:.50}", f"one of {', '.join(ORDERS)}", "choose one of them")
+            raise EditError("no such order", f"{order!r:.50}", f"one of {', '.join(ORDERS)}", "choose one of them")
         with self._lock:
             # Before its first progress a worker has not read its request, behind which the order would be lost.
             if job.state == "running" and job.progress["total"] and job.worker is not None:

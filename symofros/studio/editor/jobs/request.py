@@ -15,7 +15,7 @@ from symofros.description import System, in_order
 from symofros.description.yaml import read_yaml
 from symofros.diagrams.diagram import Diagram
 from symofros.diagrams.files.reader import read_diagram
-from symofros.errors import DescriptionError, Problem, SymofrosError
+from symofros.errors import DescriptionError, SymofrosError
 from symofros.mechanics.topology import find_problems
 
 Json = dict[str, Any]
@@ -64,7 +64,7 @@ def number_of(given: Any, what: str, from_zero: bool = False) -> float:
         number = math.nan
     if not math.isfinite(number) or (from_zero and number < 0.0):
         rule = "a finite number from zero" if from_zero else "a finite number"
-        raise SymofrosError(Problem(f"{what} is not a number", f"{given!r:.100}", rule, "mend it"))
+        raise SymofrosError(f"{what} is not a number", f"{given!r:.100}", rule, "mend it")
     return number
 
 

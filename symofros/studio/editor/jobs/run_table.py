@@ -10,7 +10,7 @@ import numpy as np
 
 from symofros.errors import SymofrosError
 from symofros.simulation.results.saving import write_columns
-from symofros.studio.editor.editing.data_edits import EditError, refusal
+from symofros.studio.editor.editing.data_edits import EditError
 
 Json = dict[str, Any]
 
@@ -29,9 +29,9 @@ def table_of(kind: str, result: Any, suffix: str) -> bytes:
         EditError: The job has no curves, the format is none of these, or Parquet is not installed.
     """
     if kind not in _COLUMNS or not isinstance(result, dict):
-        raise refusal("no curves to save", kind, "simulations and runs of diagrams have curves", "run it first")
+        raise EditError("no curves to save", kind, "simulations and runs of diagrams have curves", "run it first")
     if suffix not in MEDIA_TYPES:
-        raise refusal("no such format", f"'{suffix[:20]}'", f"one of {', '.join(MEDIA_TYPES)}", "choose one of them")
+        raise EditError("no such format", f"'{suffix[:20]}'", f"one of {', '.join(MEDIA_TYPES)}", "choose one of them")
     curves = {"t": ("s", result["t"]), **_COLUMNS[kind](result)}
     columns = {name: np.array(values, dtype=np.float64) for name, (_, values) in curves.items()}
     # A simulation's CSV is read again by `symofros view`, whose columns are names alone, as of Trajectory.save.

@@ -9,7 +9,7 @@ import numpy as np
 import symofros as sf
 from symofros.base.arrays import Array
 from symofros.base.names import speed_of
-from symofros.errors import Problem, UnknownNameError, did_you_mean
+from symofros.errors import UnknownNameError, did_you_mean
 from symofros.simulation.analysis.kinematics.starts import closed_start
 from symofros.studio.editor.jobs.request import Json, number_of
 
@@ -53,9 +53,7 @@ def values_of(names: tuple[str, ...], given: Any, default: Any, what: str) -> Ar
         plain = speed_of(str(name), names)
         if not plain:
             raise UnknownNameError(
-                Problem(
-                    f"no {what} '{name}'", ", ".join(names[:12]), f"a {what} of the model", did_you_mean(name, names)
-                )
+                f"no {what} '{name}'", ", ".join(names[:12]), f"a {what} of the model", did_you_mean(name, names)
             )
         values[names.index(plain)] = number_of(number, name)
     return values

@@ -7,7 +7,7 @@ from typing import Any
 
 import symofros as sf
 from symofros.base.names import speed_column, symbol_of
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.studio.editor.jobs.request import Json
 
 
@@ -27,9 +27,7 @@ def events_of(model: sf.Model, options: Json) -> dict[str, sf.Event]:
         if not name or not formula or name in events:
             found = f"name '{name}', formula '{formula}'"
             raise SymofrosError(
-                Problem(
-                    "an event without a name of its own, or without a formula", found, "each event has both", "name it"
-                )
+                "an event without a name of its own, or without a formula", found, "each event has both", "name it"
             )
         events[name] = sf.Event(formula, direction=each.get("direction", "both"), terminal=each.get("terminal") is True)
     return events | (_limits(model) if options.get("stop_at_limits") is True else {})

@@ -23,7 +23,7 @@ import symofros as sf
 from symofros.base.arrays import Array
 from symofros.base.names import rate_symbol, speed_column, symbol_of
 from symofros.description.yaml import write_yaml
-from symofros.errors import EquilibriumError, Problem, SymofrosError, did_you_mean
+from symofros.errors import EquilibriumError, SymofrosError, did_you_mean
 from symofros.studio.editor.jobs.analyses import Analysed, equilibrium, linear, modes
 from symofros.studio.editor.jobs.request import Json, Tell, number_of, numbers_for_json, table
 from symofros.studio.editor.jobs.starts import laws_of, stated_start, whole_of
@@ -41,9 +41,7 @@ def sweep(asked: Analysed, tell: Tell) -> Json:
     if name not in names:
         rule = "a parameter of the model that is no constant, whose value is a number"
         raise SymofrosError(
-            Problem(
-                f"sweep: no parameter '{name:.50}'", ", ".join(names[:12]) or "none", rule, did_you_mean(name, names)
-            )
+            f"sweep: no parameter '{name:.50}'", ", ".join(names[:12]) or "none", rule, did_you_mean(name, names)
         )
     low, high = (number_of(asked.options.get(key), key) for key in ("low", "high"))
     values = np.linspace(low, high, whole_of(asked.options.get("count"), 2, MOST_VALUES, 5))
@@ -178,9 +176,7 @@ def analyse(request: Json, tell: Tell) -> Json:
     """
     what = str(request.get("options", {}).get("what"))
     if what not in ANALYSES:
-        raise SymofrosError(
-            Problem(f"no analysis '{what:.50}'", what[:50], ", ".join(ANALYSES), did_you_mean(what, ANALYSES))
-        )
+        raise SymofrosError(f"no analysis '{what:.50}'", what[:50], ", ".join(ANALYSES), did_you_mean(what, ANALYSES))
     return {
         "what": what,
         "plots": [],

@@ -25,13 +25,14 @@ from symofros.description.yaml import YamlFault
 from symofros.errors import Problem
 from symofros.studio.editor.diagrams.native_code import ConsentError
 from symofros.studio.editor.document.document import StaleError
+from symofros.studio.editor.document.documentation import documented
 from symofros.studio.editor.document.examples import listed
 from symofros.studio.editor.document.figures.shape_curves import curves
 from symofros.studio.editor.document.parts.palette import catalogue
 from symofros.studio.editor.document.session import Json, Session
 from symofros.studio.editor.document.storage import ConflictError
 from symofros.studio.editor.document.workspace import FileError
-from symofros.studio.editor.editing.data_edits import EditError, refusal
+from symofros.studio.editor.editing.data_edits import EditError
 from symofros.studio.editor.jobs.film import MEDIA_TYPES as FILM_TYPES
 from symofros.studio.editor.jobs.film import film_of
 from symofros.studio.editor.jobs.processes import Jobs
@@ -90,6 +91,7 @@ class Editor:
             Route("/api/inertia", self.inertia, methods=["POST"]),
             Route("/api/files", self.files),
             Route("/api/examples", self.examples),
+            Route("/api/docs", self.docs),
             Route("/api/parts", self.parts),
             Route("/api/parts", self.keep_part, methods=["POST"]),
             Route("/api/import", self.import_text, methods=["POST"]),
@@ -172,6 +174,10 @@ class Editor:
     async def examples(self, _: Request) -> Response:
         """Examples that a document can be begun from."""
         return JSONResponse({"examples": listed()})
+
+    async def docs(self, request: Request) -> Response:
+        """A page of the documentation, or a section of it."""
+        return JSONResponse({"text": await run_sync(documented, request.query_params.get("page", ""))})
 
     async def parts(self, _: Request) -> Response:
         """Sub-assemblies that were kept."""
@@ -314,7 +320,9 @@ async def body_of(request: Request) -> Json:
     except (ValueError, RecursionError) as error:
         body = str(error)
     if not isinstance(body, dict):
-        raise refusal("the body is not a JSON mapping", f"{body!r:.100}", "bodies are JSON mappings", "reload the page")
+        raise EditError(
+            "the body is not a JSON mapping", f"{body!r:.100}", "bodies are JSON mappings", "reload the page"
+        )
     return body
 
 

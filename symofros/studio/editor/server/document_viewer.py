@@ -14,7 +14,7 @@ import numpy as np
 from symofros.base.measures import ANGLE, LENGTH
 from symofros.description import System
 from symofros.errors import Problem, SymofrosError
-from symofros.studio.editor.editing.data_edits import EditError, four_parts, refusal
+from symofros.studio.editor.editing.data_edits import EditError, four_parts
 from symofros.studio.editor.jobs.bent_beams import bent_beams
 from symofros.studio.editor.jobs.run_states import states_of, trajectory_of
 from symofros.studio.editor.jobs.worker import error_of
@@ -208,7 +208,7 @@ class DocumentViewer:
             model = viewer.mechanism.model
             names = tuple(series["name"] for series in run["series"] if series["kind"] == "q")
             if names != model.names.q:
-                raise refusal(
+                raise EditError(
                     "the run does not fit the model that is shown",
                     f"coordinates {', '.join(names[:12])}",
                     f"the model has {', '.join(model.names.q[:12])}",
@@ -321,11 +321,11 @@ def _numbers(body: Json, key: str) -> dict[str, float]:
 
 def _nothing_shown() -> EditError:
     rule = "a pose is of the mechanism that is shown"
-    return refusal("nothing is shown", "no view", rule, "open the 3-D pane first")
+    return EditError("nothing is shown", "no view", rule, "open the 3-D pane first")
 
 
 def _malformed(what: str, found: Any, rule: str) -> EditError:
-    return refusal(f"{what} of the request is malformed", f"{found!r:.100}", rule, "reload the page")
+    return EditError(f"{what} of the request is malformed", f"{found!r:.100}", rule, "reload the page")
 
 
 def _problem(parts: Json) -> Problem:

@@ -7,7 +7,7 @@ import json
 from collections.abc import AsyncIterator
 from typing import Any
 
-from symofros.studio.editor.editing.data_edits import refusal
+from symofros.studio.editor.editing.data_edits import EditError
 
 MAX_LISTENERS = 50
 MAX_WAITING = 1000
@@ -47,7 +47,7 @@ class Events:
             EditError: Too many do already.
         """
         if len(self._listeners) >= MAX_LISTENERS:
-            raise refusal("too many pages listen", f"{MAX_LISTENERS}", f"at most {MAX_LISTENERS}", "close some tabs")
+            raise EditError("too many pages listen", f"{MAX_LISTENERS}", f"at most {MAX_LISTENERS}", "close some tabs")
         self._loop = asyncio.get_running_loop()
         queue: asyncio.Queue[str] = asyncio.Queue(MAX_WAITING)
         self._listeners.add(queue)

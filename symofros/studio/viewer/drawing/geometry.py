@@ -68,12 +68,7 @@ _FLATTEST = 6.0  # Ratio of the sides of its section.
 
 
 def landmarks(tree: SpanningTree, numbers: Numbers) -> Iterator[LinkPoint]:
-    """Points that a picture must hold: joints, frames, mass centres.
-
-    Args:
-        tree: Tree of a checked system.
-        numbers: The parameters' values.
-    """
+    """Points that a picture must hold: joints, frames, mass centres."""
     yield LinkPoint(BASE, np.zeros(3))
     for frame in tree.frames:
         yield LinkPoint(frame.link, placed(frame.placement, numbers)[0])

@@ -30,10 +30,6 @@ def inertia_box(body: RigidBody, numbers: Numbers) -> InertiaBox | None:
 
     A box of edges a, b, c has moments such as m (b^2 + c^2)/12, so a^2 = 6 (I_b + I_c - I_a)/m. Where an inertia that
     no body can have (waiver `nonphysical_inertia`) makes that negative, the edge is zero.
-
-    Args:
-        body: Body as the user stated it.
-        numbers: The parameters' values.
     """
     if body.inertia is None:
         return None

@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.errors import Problem, UnknownNameError, did_you_mean
+from symofros.errors import UnknownNameError, did_you_mean
 from symofros.studio.viewer.drawing.drawing import KINDS, Color, Drawing
 
 # Layer -> its colour in pictures and its name in words, and the unit of what the arrows are.
@@ -98,4 +98,4 @@ def check_layer(what: str, layer: str) -> None:
     """
     if layer not in LAYERS:
         rule, remedy = f"one of {', '.join(LAYERS)}", did_you_mean(layer, LAYERS)
-        raise UnknownNameError(Problem(f"{what}: no layer '{layer}'", f"'{layer}'", rule, remedy))
+        raise UnknownNameError(f"{what}: no layer '{layer}'", f"'{layer}'", rule, remedy)

@@ -12,7 +12,7 @@ from symofros.base.arrays import Array, real_array
 from symofros.base.options import Options
 from symofros.compiler import compile_system
 from symofros.description import Closure, Rolling, System
-from symofros.errors import AssemblyError, Problem, ShapeError
+from symofros.errors import AssemblyError, ShapeError
 from symofros.mechanics.topology import Numbers, SpanningTree, build_tree, frame_of
 from symofros.runtime.beams import BeamBending
 from symofros.runtime.model import ArrayLike, Model
@@ -135,26 +135,17 @@ class Mechanism:
         array = real_array(given)
         if array is None or array.shape != (size,):
             raise ShapeError(
-                Problem(
-                    f"view of '{self.system.name}': {what} has the wrong shape",
-                    f"{given!r:.60}" if array is None else str(array.shape),
-                    f"{what} has shape ({size},)",
-                    "one state is shown at a time; motions are played",
-                )
+                f"view of '{self.system.name}': {what} has the wrong shape",
+                f"{given!r:.60}" if array is None else str(array.shape),
+                f"{what} has shape ({size},)",
+                "one state is shown at a time; motions are played",
             )
         return np.array(array)
 
     def posture(
         self, q: ArrayLike, u: ArrayLike | None = None, par: ArrayLike | None = None, exaggeration: float = 1.0
     ) -> Posture:
-        """Poses of the links for coordinates (..., nq).
-
-        Args:
-            q: Coordinates.
-            u: Inputs, for prescribed motions.
-            par: Run-time parameters.
-            exaggeration: Factor of the elastic coordinates.
-        """
+        """Poses of the links for coordinates (..., nq)."""
         drawn = np.array(q, dtype=np.float64)
         drawn[..., self._elastic] *= exaggeration
         shape = (*drawn.shape[:-1], len(self._names) + 1)

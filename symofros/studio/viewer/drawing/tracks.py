@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.errors import Problem, ShapeError
+from symofros.errors import ShapeError
 from symofros.mechanics.topology import BASE
 from symofros.studio.viewer.drawing.drawing import Color, DrawnPart
 from symofros.studio.viewer.drawing.meshes import Mesh, axes_along, ellipse, tube
@@ -93,4 +93,4 @@ def _mesh(points: Array, radius: float) -> Mesh:
 
 
 def _refuse(what: str, found: str, rule: str) -> None:
-    raise ShapeError(Problem(f"view: {what} can't be drawn", found, rule, "for example ('desired', points)"))
+    raise ShapeError(f"view: {what} can't be drawn", found, rule, "for example ('desired', points)")

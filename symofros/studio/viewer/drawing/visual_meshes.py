@@ -48,7 +48,8 @@ class FilesBeside:
         self.files_left -= 1
         with path.open("rb") as stream:
             data = stream.read(self.bytes_left + 1)
-        if len(data) > self.bytes_left or not _is_harmless(data):
+        is_buffer = path.suffix == ".bin"  # Numbers of glTF.
+        if len(data) > self.bytes_left or not (is_buffer or _is_harmless(data)):
             raise OSError(f"{name:.80} is too large, or a picture that is neither PNG nor JPEG")
         self.bytes_left -= len(data)
         return data
@@ -110,7 +111,10 @@ def _image_module() -> Any:
 
 MAX_BYTES = 64 << 20
 MAX_FACES = 500_000
-SUFFIXES = (".stl", ".obj", ".dae", ".ply", ".off", ".glb")
+GLTF = (".glb", ".gltf")
+SUFFIXES = (".stl", ".obj", ".dae", ".ply", ".off", *GLTF)
+# From the axes of glTF, y up (section 3.4 of its specification), to those of descriptions, z up, as RViz and Drake do.
+_R_DESCRIBED_GLTF = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]])
 
 
 def visual_mesh(visual: Visual) -> Mesh | None:
@@ -224,9 +228,10 @@ def _loaded(file: Path, data: bytes) -> Mesh:
         beside = FilesBeside(file.parent)
         scene = trimesh.load_scene(io.BytesIO(data), file_type=kind, process=False, resolver=beside)
         leave_out_pictures(scene)
-        return merged([_with_colors(surface) for surface in scene.dump()])
+        mesh = merged([_with_colors(surface) for surface in scene.dump()])
     except Exception as error:  # noqa: BLE001 - its readers raise whatever a bad file makes them stumble over.
         raise ValueError(f"not a {file.suffix} file: {error}") from None
+    return mesh.transformed(np.zeros(3), _R_DESCRIBED_GLTF) if file.suffix.lower() in GLTF else mesh
 
 
 def _with_colors(surface: Any) -> Mesh:

@@ -8,7 +8,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.errors import Problem, UnknownNameError, did_you_mean
+from symofros.errors import UnknownNameError, did_you_mean
 from symofros.studio.viewer.drawing.drawing import Drawing, same_geometry
 from symofros.studio.viewer.drawing.layers import initial_layers
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture, State
@@ -137,8 +137,6 @@ class SceneState:
 def _index(what: str, names: Sequence[str], name: str) -> int:
     if name not in names:
         raise UnknownNameError(
-            Problem(
-                f"view: no {what} '{name}'", ", ".join(names[:12]), f"a {what} of the model", did_you_mean(name, names)
-            )
+            f"view: no {what} '{name}'", ", ".join(names[:12]), f"a {what} of the model", did_you_mean(name, names)
         )
     return names.index(name)

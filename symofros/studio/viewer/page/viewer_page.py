@@ -10,7 +10,7 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.errors import SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.beams import BeamBending, bending_notes
 from symofros.studio.viewer.drawing.layers import ARROWS
 from symofros.studio.viewer.drawing.poses import Mechanism, State
@@ -199,7 +199,7 @@ class ViewerPage:
             links = {link.name: i for i, link in enumerate(self.mechanism.tree.links)}
             if body is not None and body not in links:
                 rule, remedy = "a body of the mechanism", did_you_mean(body, links)
-                raise UnknownNameError(Problem(f"view: no body '{body}' to follow", f"'{body}'", rule, remedy))
+                raise UnknownNameError(f"view: no body '{body}' to follow", f"'{body}'", rule, remedy)
             place = self._scene_state.posture.p
             self._camera_follow = (
                 None if body is None else CameraFollow(self._server, body, links[body], place[links[body]])

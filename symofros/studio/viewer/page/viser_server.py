@@ -81,7 +81,7 @@ def stop_server(server: Any) -> None:
 
 def _refuse(host: str, port: int, found: str, rule: str) -> None:
     raise SymofrosError(
-        Problem(f"view: can't serve at {host}:{port}", found, rule, "choose another port, or 0 for any that is free")
+        f"view: can't serve at {host}:{port}", found, rule, "choose another port, or 0 for any that is free"
     )
 
 

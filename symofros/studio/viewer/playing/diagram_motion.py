@@ -7,7 +7,7 @@ from collections.abc import Mapping
 from symofros.description import System
 from symofros.diagrams.block import Block
 from symofros.diagrams.result import DiagramRun
-from symofros.errors import Problem, UnknownNameError, did_you_mean
+from symofros.errors import UnknownNameError, did_you_mean
 from symofros.studio.viewer.playing.motion import Played, States
 
 
@@ -34,7 +34,7 @@ def chosen_block(name: str, blocks: Mapping[str, Block], block: str = "") -> str
         remedy = did_you_mean(block, moving) or remedy
     else:
         what, actual = f"view of diagram '{name}': which mechanism?", f"{len(moving)} mechanisms"
-    raise UnknownNameError(Problem(what, actual, rule, remedy))
+    raise UnknownNameError(what, actual, rule, remedy)
 
 
 def shown_system_and_states(run: DiagramRun, block: str = "") -> tuple[System, States]:

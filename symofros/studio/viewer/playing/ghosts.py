@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import Array
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.studio.viewer.drawing.drawing import Color, Drawing, same_geometry
 from symofros.studio.viewer.drawing.poses import Mechanism, Posture
 from symofros.studio.viewer.playing.motion import Played, PlayedMotion, motion_of
@@ -57,18 +57,13 @@ class Ghost:
 def ghosts_of(mechanism: Mechanism, runs: Mapping[str, Played], drawing: Drawing) -> tuple[Ghost, ...]:
     """Runs by their names as ghosts of a mechanism.
 
-    Args:
-        mechanism: Mechanism that moves.
-        runs: Runs of it by their names.
-        drawing: Drawing of the run that plays.
-
     Raises:
         ShapeError: A run does not fit the model.
         SymofrosError: There are more than colors, or events change in a run how the mechanism looks.
     """
     if len(runs) > len(_COLORS):
         found, rule = f"{len(runs)} runs", f"{len(_COLORS)} ghosts at most: more can't be distinguished"
-        raise SymofrosError(Problem("view: too many ghosts", found, rule, "show those that differ most"))
+        raise SymofrosError("view: too many ghosts", found, rule, "show those that differ most")
     return tuple(
         _ghost(mechanism, name, motion_of(mechanism.model, run), color, drawing)
         for (name, run), color in zip(runs.items(), _COLORS, strict=False)
@@ -79,5 +74,5 @@ def _ghost(mechanism: Mechanism, name: str, motion: PlayedMotion, color: Color, 
     own, *others = (mechanism.drawing(par) for par in np.unique(motion.par, axis=0))
     if not all(same_geometry(own, other) for other in others):
         found, rule = "parameters that events set", "a ghost looks the same in all of its run"
-        raise SymofrosError(Problem(f"view: ghost '{name}' changes its shape", found, rule, "play that run itself"))
+        raise SymofrosError(f"view: ghost '{name}' changes its shape", found, rule, "play that run itself")
     return Ghost(name, color, motion, drawing if same_geometry(own, drawing) else own)

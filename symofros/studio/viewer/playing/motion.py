@@ -131,21 +131,17 @@ def read_motion(path: str | Path, model: Model) -> PlayedMotion:
     file = Path(path)
     if file.suffix not in SUFFIXES:
         raise SymofrosError(
-            Problem(
-                f"trajectory: can't read '{file.name}'",
-                file.suffix or "no suffix",
-                f"one of {', '.join(SUFFIXES)}",
-                "save it with Trajectory.save",
-            )
+            f"trajectory: can't read '{file.name}'",
+            file.suffix or "no suffix",
+            f"one of {', '.join(SUFFIXES)}",
+            "save it with Trajectory.save",
         )
     if not file.is_file():
         raise SymofrosError(
-            Problem(
-                f"trajectory: '{file}' does not exist",
-                "no such file",
-                "a trajectory is an existing file",
-                "check the path; `symofros simulate MODEL T -o FILE` writes one",
-            )
+            f"trajectory: '{file}' does not exist",
+            "no such file",
+            "a trajectory is an existing file",
+            "check the path; `symofros simulate MODEL T -o FILE` writes one",
         )
     readers = {".npz": _read_arrays, ".csv": _read_csv, ".parquet": _read_parquet}
     try:
@@ -154,7 +150,7 @@ def read_motion(path: str | Path, model: Model) -> PlayedMotion:
         raise
     except TooLargeError as error:
         what, rule = f"trajectory: '{file.name}' is too large", f"at most {MAX_NUMBERS} numbers are shown"
-        raise SymofrosError(Problem(what, str(error)[:200], rule, "save fewer states")) from None
+        raise SymofrosError(what, str(error)[:200], rule, "save fewer states") from None
     # NotImplementedError: a compression or an encoding that the reader of Parquet files does not know.
     except (OSError, ValueError, csv.Error, NotImplementedError, MemoryError) as error:
         fault = Problem(
@@ -289,7 +285,7 @@ def finite(name: str, value: float) -> float:
         SymofrosError: It is none.
     """
     if not np.isfinite(value):
-        raise SymofrosError(Problem(f"view: no such {name}", repr(value), f"{name} is a finite number", "give another"))
+        raise SymofrosError(f"view: no such {name}", repr(value), f"{name} is a finite number", "give another")
     return float(value)
 
 
@@ -300,9 +296,7 @@ def positive(name: str, value: float) -> float:
         SymofrosError: It is none.
     """
     if not (np.isfinite(value) and value > 0.0):
-        raise SymofrosError(
-            Problem(f"view: no such {name}", repr(value), f"{name} is a finite number above 0", "give another")
-        )
+        raise SymofrosError(f"view: no such {name}", repr(value), f"{name} is a finite number above 0", "give another")
     return float(value)
 
 
@@ -311,4 +305,4 @@ def _some(names: Sequence[str]) -> str:
 
 
 def _refuse(what: str, found: str, rule: str, remedy: str) -> NoReturn:
-    raise ShapeError(Problem(f"{what}: does not fit the model", found, rule, remedy))
+    raise ShapeError(f"{what}: does not fit the model", found, rule, remedy)

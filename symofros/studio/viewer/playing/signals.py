@@ -8,7 +8,7 @@ from dataclasses import dataclass
 import numpy as np
 
 from symofros.base.arrays import Array, numeric
-from symofros.errors import Problem, ShapeError, SymofrosError
+from symofros.errors import ShapeError, SymofrosError
 from symofros.mechanics.beams import theory_of
 from symofros.mechanics.topology import SpanningTree, joint_units
 from symofros.runtime.model import ArrayLike
@@ -99,7 +99,7 @@ def _stated(name: str, values: Array, motion: PlayedMotion) -> Signal:
             f"shape {values.shape}" if values.ndim not in (1, 2) or len(values) < n else "values that are not finite"
         )
         rule, remedy = f"a value, or k of them, at each of the motion's {n} times", "such as run.q[:, 0]"
-        raise ShapeError(Problem(f"view: signal '{name}' does not fit the motion", found, rule, remedy))
+        raise ShapeError(f"view: signal '{name}' does not fit the motion", found, rule, remedy)
     columns = values[:n].reshape(n, -1)
     curves = (name,) if columns.shape[1] == 1 else tuple(f"{name}[{i}]" for i in range(columns.shape[1]))
     return Signal(name, curves, motion.t, columns)

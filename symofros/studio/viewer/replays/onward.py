@@ -12,7 +12,7 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.description import System
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.exports.exporting import export
 from symofros.simulation.results.trajectory import Trajectory
 from symofros.simulation.stepping.methods import METHODS
@@ -42,23 +42,19 @@ def onward(system: System, run: object, t: Array, q: Array, stepping: Stepping) 
     """
     if not isinstance(run, Trajectory):
         raise SymofrosError(
-            Problem(
-                "record: the page can't simulate on",
-                f"a motion of {type(run).__name__}",
-                "a state has speeds, too: those of a Trajectory of sf.simulate",
-                "leave simulate out, or record a trajectory",
-            )
+            "record: the page can't simulate on",
+            f"a motion of {type(run).__name__}",
+            "a state has speeds, too: those of a Trajectory of sf.simulate",
+            "leave simulate out, or record a trajectory",
         )
     if run.changes:
         found, rule = "parameters that events set", "the page has one set of parameters, and no events"
         raise SymofrosError(
-            Problem("record: the page can't simulate on", found, rule, "leave simulate out: the replay has them")
+            "record: the page can't simulate on", found, rule, "leave simulate out: the replay has them"
         )
     unknown = sorted(set(stepping) - set(_STEPPING))
     if unknown:
-        raise SymofrosError(
-            Problem("record: simulate", ", ".join(unknown), f"any of {', '.join(_STEPPING)}", "leave it out")
-        )
+        raise SymofrosError("record: simulate", ", ".join(unknown), f"any of {', '.join(_STEPPING)}", "leave it out")
     method = METHODS.get(run.statistics.method)
     own = {} if method is None or method.family.multistep else {"method": run.statistics.method}
     ends = {name: None for name, event in system.events.items() if event.terminal}  # The page goes on there.

@@ -25,12 +25,7 @@ def program(graph: Graph, count: int, edges: Sequence[Edge]) -> tuple[Program, t
 
 
 def of_limbs(count: int, limb: Callable[[Graph, Callable[[int], Edge], int], Edge]) -> tuple[Graph, list[Edge]]:
-    """A graph, and an edge of each limb.
-
-    Args:
-        count: Number of limbs.
-        limb: The edge from the graph, the limb's inputs and its number.
-    """
+    """A graph, and an edge of each limb."""
     graph = Graph()
     edges = [limb(graph, lambda j, k=k: graph.input("q", JOINTS * k + j), k) for k in range(count)]  # type: ignore[misc]
     return graph, edges

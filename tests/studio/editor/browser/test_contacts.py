@@ -53,6 +53,15 @@ def test_a_contact_is_made_changed_and_taken_away(arm: Server, page: Page, fault
     page.set_viewport_size({"width": 1280, "height": 760})
     steps.accept(page)
     steps.problems(page, 0)
+
+    # It is doubled, alone and with its body, each in one step of undo.
+    for chosen in (steps.wire(page, "contacts/touch"), steps.block(page, "bodies/lower")):
+        chosen.press("Space")
+        page.keyboard.press("Control+d")
+        expect(steps.wire(page, "contacts/touch2")).to_have_count(1)
+        steps.problems(page, 0)
+        page.keyboard.press("Control+z")
+        expect(steps.wire(page, "contacts/touch2")).to_have_count(0)
     steps.open_view(page)
     picture("contact-drawn")
     page.get_by_role("tab", name="Tree").click()

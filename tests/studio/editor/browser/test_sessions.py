@@ -264,7 +264,8 @@ def test_a_window_has_help_and_its_page(opened: Serve, page: Page, faults: Fault
     steps.window(page).get_by_text("Help", exact=True).click()
     text = steps.window(page).get_by_role("region", name="Help")
     expect(text).to_contain_text("Number of shape functions for the displacement along y")
-    expect(text).to_contain_text("docs/theory/beams.md")
+    text.get_by_text("docs/theory/beams.md", exact=True).click()
+    expect(text.get_by_role("region", name="docs/theory/beams.md")).to_contain_text("A beam is one body")
     assert faults() == []
     text.scroll_into_view_if_needed()
     picture("help")

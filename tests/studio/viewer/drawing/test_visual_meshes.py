@@ -332,3 +332,21 @@ def test_faces_have_the_colors_of_pictures_within_the_file(
     monkeypatch.setattr(visual_meshes, "MAX_PIXELS", 15)
     (tmp_path / "other.glb").write_bytes((tmp_path / "part.glb").read_bytes())
     assert set(colors_of(tmp_path / "other.glb")) == {tuple(factor[:3]) if factor else (102, 102, 102)}
+
+
+@pytest.mark.parametrize("form", ["glb", "gltf", "embedded"])
+def test_gltf_is_turned_from_y_up_to_z_up(form: str, tmp_path: Path) -> None:
+    """In one file, in text beside its buffer, in text that holds its buffer."""
+    surface = Trimesh(CORNERS, FACES, process=False)
+    file = tmp_path / ("part.glb" if form == "glb" else "part.gltf")
+    if form == "glb":
+        surface.export(file)
+    else:
+        files = surface.scene().export(file_type="gltf", embed_buffers=form == "embedded")
+        assert len(files) == {"gltf": 3, "embedded": 1}[form]
+        for name, data in files.items():
+            (tmp_path / name.replace("model.gltf", file.name)).write_bytes(data)
+    mesh = visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), file=str(file)))
+    assert mesh is not None
+    assert mesh.vertices.tolist() == [[x, -z, y] for x, y, z in CORNERS.tolist()]
+    assert volume(mesh) == pytest.approx(1.0)

@@ -96,12 +96,7 @@ def numbers(values: Vector) -> str:
 
 
 def describe(tree: Tree, *, base: str = WORLD) -> Described | Unsupported:
-    """The tree in URDF; a first link on a free joint alone makes it a floating one.
-
-    Args:
-        tree: The tree.
-        base: Name of the link that stands still.
-    """
+    """The tree in URDF; a first link on a free joint alone makes it a floating one."""
     floating = _floats(tree)
     lines: list[str] = []
     series: list[tuple[str, ...]] = []
@@ -224,14 +219,7 @@ def _joint(name: str, joint: Joint, parent: str, child: str) -> list[str]:
 
 
 def slots_of(tree: Tree, described: Described, order: Sequence[str], base: str = "") -> tuple[tuple[Slot, ...], ...]:
-    """Slots of an engine that numbers joints of one coordinate in an order of its own, after those of a floating base.
-
-    Args:
-        tree: The tree.
-        described: The tree in URDF.
-        order: Names of the joints in the engine's order.
-        base: Chart of the floating base, for trees that have one.
-    """
+    """Slots of an engine that orders joints of one coordinate in its own way, after those of a floating base."""
     chart = CHARTS[base] if described.floating else None
     nq, nv = (chart.nq, chart.nv) if chart else (0, 0)
     slots: list[tuple[Slot, ...]] = []

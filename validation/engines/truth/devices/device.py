@@ -53,15 +53,7 @@ class Device(NamedTuple):
 
 
 def model(world: str, after: str = "", option: str = "", inside: str = "", head: str = "") -> str:
-    """MJCF without gravity, with steps of `interface.STEP`.
-
-    Args:
-        world: What stands in the world.
-        after: Elements after it.
-        option: Attributes of the options.
-        inside: Elements of the options.
-        head: Elements before the world.
-    """
+    """MJCF without gravity, with steps of `interface.STEP`."""
     stated = "" if "gravity=" in option else ' gravity="0 0 0"'
     return (
         f'<mujoco><compiler angle="radian"/><option timestep="{STEP}"{stated} {option}>{inside}</option>{head}'

@@ -13,7 +13,7 @@ from symofros.description.yaml import BeamEntry
 from symofros.errors import DescriptionError
 from symofros.expr import Expression, evaluate
 from symofros.runtime.beams import BEAM_LIMIT, NOTED_ERROR, slope_of_error
-from symofros.studio.editor.editing.data_edits import refusal
+from symofros.studio.editor.editing.data_edits import EditError
 
 Json = dict[str, Any]
 
@@ -36,10 +36,6 @@ _MOTIONS = {
 def beam_figures(entry: Any, known: Mapping[str, float]) -> Json:
     """Figures of a beam at the parameters' defaults.
 
-    Args:
-        entry: Beam as the file states it.
-        known: Number of each parameter.
-
     Returns:
         `section`: property -> number, without those that vary along the beam or have none; `frequencies`: direction ->
         the first three of the uniform slender beam, clamped at its root and free at its tip [Hz], without those
@@ -55,7 +51,7 @@ def beam_figures(entry: Any, known: Mapping[str, float]) -> Json:
         stated = BeamEntry.model_validate(entry).stated()
     except (ValidationError, DescriptionError) as error:
         rule = "figures are of a beam that can be read"
-        raise refusal("the beam is not complete", f"{str(error)[:100]}", rule, "fill in what is marked") from None
+        raise EditError("the beam is not complete", f"{str(error)[:100]}", rule, "fill in what is marked") from None
     numbers = {name: _number(stated.get(name), known) for name in (*_SHOWN, "length")}
     figures = {name: number for name, number in numbers.items() if number is not None}
     if figures.get("rhoJ") == 0.0:  # Not stated: twist without inertia of its own.

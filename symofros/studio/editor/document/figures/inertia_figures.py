@@ -12,7 +12,7 @@ from symofros.description import RigidBody, System
 from symofros.description.yaml import InertiaEntry, SolidEntry
 from symofros.errors import DescriptionError
 from symofros.mechanics.topology import Numbers, moments_about_center
-from symofros.studio.editor.editing.data_edits import refusal
+from symofros.studio.editor.editing.data_edits import EditError
 
 Json = dict[str, Any]
 
@@ -21,10 +21,6 @@ _ENTRIES: dict[str, type[InertiaEntry] | type[SolidEntry]] = {"inertia": Inertia
 
 def inertia_figures(stated: Json, known: Mapping[str, float]) -> Json:
     """Figures of a rigid body at the parameters' defaults.
-
-    Args:
-        stated: `inertia` or `solid`, as the file states it.
-        known: Number of each parameter.
 
     Returns:
         `mass` [kg], `center_of_mass` in the body frame (3) [m]; `moments` Ixx, Iyy, Izz and `products` Ixy, Ixz, Iyz
@@ -55,4 +51,4 @@ def inertia_figures(stated: Json, known: Mapping[str, float]) -> Json:
 
 def _incomplete(found: str) -> Exception:
     rule = "figures are of a body with numbers for its mass and sizes"
-    return refusal("the inertia is not complete", found, rule, "fill in what is marked")
+    return EditError("the inertia is not complete", found, rule, "fill in what is marked")

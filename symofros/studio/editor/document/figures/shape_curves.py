@@ -7,7 +7,7 @@ from typing import Any, get_args
 import numpy as np
 
 from symofros.description import Direction, Family, Samples, UserShape, as_value
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, did_you_mean
 from symofros.mechanics.beams import MAX_MODES, THEORIES, FamilyError
 from symofros.studio.editor.editing.data_edits import EditError
 
@@ -56,4 +56,4 @@ def _user(given: Any) -> tuple[UserShape, ...]:
 
 
 def _wrong(what: str, found: Any, rule: str, remedy: str) -> EditError:
-    return EditError(Problem(f"{what}: no shape functions", f"{found!s:.200}", rule, remedy))
+    return EditError(f"{what}: no shape functions", f"{found!s:.200}", rule, remedy)

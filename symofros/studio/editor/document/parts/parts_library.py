@@ -5,7 +5,6 @@ from __future__ import annotations
 from typing import Any
 
 from symofros.description.yaml import YamlFault
-from symofros.errors import Problem
 from symofros.studio.editor.document.parts.parts import extracted
 from symofros.studio.editor.document.workspace import FileError, Workspace, identifier, read_text, write
 from symofros.studio.editor.editing.data_edits import EditError
@@ -46,7 +45,7 @@ class Library:
         text, _ = read_text(self.workspace.inside(f"{FOLDER}/{name}.yaml"))
         data = yaml_text_of(text).data
         if not isinstance(data, dict) or not isinstance(data.get("bodies"), dict):
-            raise EditError(Problem(f"'{name[:50]}' is not a part", "no bodies", "a part has bodies", "choose another"))
+            raise EditError(f"'{name[:50]}' is not a part", "no bodies", "a part has bodies", "choose another")
         return data
 
     def keep(self, name: str, data: Any, bodies: Any) -> None:
@@ -57,16 +56,14 @@ class Library:
             FileError: There is a part of that name; it is not overwritten.
         """
         if not isinstance(bodies, list) or not all(isinstance(item, str) for item in bodies):
-            raise EditError(Problem("bodies of the part", f"{bodies!r:.100}", "a list of names", "choose some"))
+            raise EditError("bodies of the part", f"{bodies!r:.100}", "a list of names", "choose some")
         file = self.workspace.inside(f"{FOLDER}/{identifier(name)}.yaml")
         if file.exists():
             raise FileError(
-                Problem(
-                    f"a part '{file.stem}' is there already",
-                    file.stem,
-                    "parts have names of their own",
-                    "choose another name",
-                )
+                f"a part '{file.stem}' is there already",
+                file.stem,
+                "parts have names of their own",
+                "choose another name",
             )
         part = extracted(data, bodies)
         file.parent.mkdir(exist_ok=True)

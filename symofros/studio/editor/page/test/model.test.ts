@@ -89,16 +89,19 @@ describe("changes of a window", () => {
 });
 
 describe("copies", () => {
+  const both = ["bodies/upper", "bodies/lower"];
+
   test("take what they use, and nothing else", () => {
-    const part = extract(arm, ["upper", "lower"]);
+    const part = extract(arm, both);
     expect(Object.keys(part.parameters)).toEqual(["m", "L"]);
-    expect(Object.keys(part.closures)).toEqual(["loop"]);
-    expect(Object.keys(extract(arm, ["lower"]).closures)).toEqual([]);
+    expect(Object.keys(part.links["closures"] ?? {})).toEqual(["loop"]);
+    expect(extract(arm, ["bodies/lower"]).links["closures"]).toEqual({});
+    expect(extract(arm, ["bodies/lower/joint"]).name).toBe("");
   });
 
   test("have bodies, coordinates and links of their own", () => {
-    const { edits, bodies } = insertion(arm, extract(arm, ["upper", "lower"]));
-    expect([...bodies.values()]).toEqual(["upper2", "lower2"]);
+    const { edits, ids } = insertion(arm, extract(arm, both));
+    expect(ids).toEqual(["bodies/upper2", "bodies/lower2", "closures/loop2"]);
     const made = applied(arm, edits) as {
       bodies: Record<string, { joint: JsonMap }>;
       closures: JsonMap;
@@ -113,6 +116,44 @@ describe("copies", () => {
       effort: ["-m*dq4"],
     });
     expect(made.closures["loop2"]).toEqual({ first: { body: "upper2", frame: "tip" }, second: { body: "lower2" } });
+  });
+
+  const rig: JsonMap = {
+    ...arm,
+    bodies: { base: { frames: { hook: {} } }, ...(arm["bodies"] as JsonMap) },
+    connections: { cable: { first: { body: "base", frame: "hook" }, second: { body: "lower" }, law: "L*q2" } },
+    contacts: { touch: { first: { body: "lower" }, second: { body: "base" }, radius: "unused" } },
+    nonholonomic: { blade: { knife_edge: { body: "upper", axis: "y" } } },
+    switches: { loop: { engaged: 1 }, blade: { engaged: 0 } },
+  };
+
+  test("of bodies take links with the ground, and their switches", () => {
+    const { edits, ids } = insertion(rig, extract(rig, both));
+    expect(ids.slice(2)).toEqual(["closures/loop2", "connections/cable2", "contacts/touch2", "nonholonomic/blade2"]);
+    const made = applied(rig, edits) as Record<string, Record<string, JsonMap>>;
+    expect(made["connections"]?.["cable2"]).toEqual({
+      first: { body: "base", frame: "hook" },
+      second: { body: "lower2" },
+      law: "L*q4",
+    });
+    expect(made["contacts"]?.["touch2"]?.["first"]).toEqual({ body: "lower2" });
+    expect(made["nonholonomic"]?.["blade2"]).toEqual({ knife_edge: { body: "upper2", axis: "y" } });
+    expect(made["switches"]).toEqual({
+      ...(rig["switches"] as JsonMap),
+      loop2: { engaged: 1 },
+      blade2: { engaged: 0 },
+    });
+    expect(extract(rig, ["bodies/upper"]).links["connections"]).toEqual({});
+  });
+
+  test("of a link alone join the same bodies; the ground is that of the document", () => {
+    const part = extract(rig, ["contacts/touch"]);
+    expect(part.parameters).toEqual({ unused: 3 });
+    const { edits, ids } = insertion(rig, part);
+    expect(ids).toEqual(["contacts/touch2"]);
+    expect(edits).toEqual([{ op: "set", path: ["contacts", "touch2"], value: (rig["contacts"] as JsonMap)["touch"] }]);
+    const [, elsewhere] = insertion({ bodies: { lower: {} } }, part).edits;
+    expect(elsewhere).toMatchObject({ path: ["contacts", "touch"], value: { second: { body: "world" } } });
   });
 });
 

@@ -196,6 +196,8 @@ export interface PaletteItem {
 /** An entry of a diagram's palette. */
 export interface BlockItem extends PaletteItem {
   group: string;
+  /** Page of the documentation, and its section. */
+  page?: string;
   /** All that its author says of it. */
   about?: string;
 }
@@ -242,7 +244,12 @@ export interface Part {
   parameters: JsonMap;
   inputs: JsonMap;
   bodies: JsonMap;
-  closures: JsonMap;
+  /** What stands between the bodies, or on one, by its section. */
+  links: JsonMap;
+  /** Switches of these links, by their names. */
+  switches: JsonMap;
+  /** The body that stands still where the part was taken from. */
+  ground: string;
 }
 
 /** A model or a diagram to begin with. */

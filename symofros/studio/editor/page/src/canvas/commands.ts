@@ -2,7 +2,7 @@
 
 import type { Point } from "../api/types";
 import type { MenuItem } from "../shell/Menu";
-import { copy, paste } from "../store/clipboard";
+import { copy, duplicate, paste } from "../store/clipboard";
 import { addBlock, look } from "../store/diagram";
 import { remove } from "../store/elements";
 import { toggleFolds } from "../store/folding";
@@ -34,11 +34,17 @@ export function commandsFor(id: string | null, where: Point): MenuItem[] {
   const chosen = selected.includes(id) ? selected : [id];
   const wire = diagram?.wires.find((each) => each.id === id);
   const isBlock = [...(document?.graph.nodes ?? []), ...(diagram?.nodes ?? [])].some((each) => each.id === id);
+  const isCopied = wire === undefined && id !== "world" && !id.endsWith("/joint");
   return [
     { title: "Properties…", keys: "Enter", act: () => openProperties(id) },
     ...(fileOf(pathOf(id) ?? []) === undefined ? [] : [{ title: "Go into it", act: () => goInto(id) }]),
     ...(wire === undefined ? [] : [{ title: "Add a scope", act: () => void look(wire.source, wire.source_port) }]),
-    ...(isBlock ? [{ title: "Copy", keys: "Ctrl C", act: copy }] : []),
+    ...(isCopied
+      ? [
+          { title: "Copy", keys: "Ctrl C", act: copy },
+          { title: "Duplicate", keys: "Ctrl D", act: () => void duplicate() },
+        ]
+      : []),
     ...(isBlock && diagram === null ? [{ title: "Fold or unfold", keys: "F", act: () => toggleFolds(chosen) }] : []),
     ...(isBlock && diagram !== null
       ? [{ title: "Group into a subsystem…", keys: "Ctrl G", act: () => void group(chosen) }]

@@ -1,8 +1,9 @@
-/** Copies of bodies, and how they are put into a document: with fresh names, linked to each other as they were. */
+/** Copies of bodies and of what acts between them, and how they are put into a document: with fresh names. */
 
 import type { Edit, Json, JsonMap, Part } from "../api/types";
 import { bodyNames, fresh, jointName, namesIn, renamed, symbols } from "./names";
 import { isMap, mapAt, textAt } from "./paths";
+import { bodiesIn, LINKING } from "./uses";
 
 function usedNames(value: Json): string[] {
   if (typeof value === "string") return namesIn(value);
@@ -13,21 +14,30 @@ function usedNames(value: Json): string[] {
 const chosen = (map: JsonMap, keep: (name: string, value: Json) => boolean): JsonMap =>
   Object.fromEntries(Object.entries(map).filter(([name, value]) => keep(name, value)));
 
-function within(closure: Json, bodies: Set<string>): boolean {
-  return ["first", "second"].every((end) => bodies.has(textAt(closure, [end, "body"]) ?? ""));
-}
-
-/** The named bodies, closures between them, and the parameters and inputs that they use. */
-export function extract(data: JsonMap, names: string[]): Part {
-  const wanted = new Set(names);
-  const bodies = chosen(mapAt(data, ["bodies"]), (name) => wanted.has(name));
-  const closures = chosen(mapAt(data, ["closures"]), (_, value) => within(value, wanted));
-  const used = new Set([...usedNames(bodies), ...usedNames(closures)]);
+/** The chosen bodies and links, links of these bodies to each other and to the ground, and what all of them use. */
+export function extract(data: JsonMap, ids: readonly string[]): Part {
+  const moves = (name: string): boolean => isMap(mapAt(data, ["bodies", name])["joint"]);
+  const bodies = chosen(mapAt(data, ["bodies"]), (name) => ids.includes(`bodies/${name}`) && moves(name));
+  const belongs = (link: Json): boolean => {
+    const ends = bodiesIn(link);
+    return ends.some((end) => end in bodies) && ends.every((end) => end in bodies || !moves(end));
+  };
+  const links: JsonMap = {};
+  for (const section of LINKING)
+    links[section] = chosen(
+      mapAt(data, [section]),
+      (name, link) => ids.includes(`${section}/${name}`) || belongs(link),
+    );
+  const linked = Object.values(links).flatMap((entries) => Object.keys(entries ?? {}));
+  const switches = chosen(mapAt(data, ["switches"]), (name) => linked.includes(name));
+  const used = new Set(usedNames({ bodies, links, switches }));
   const ofSection = (section: string): JsonMap => chosen(mapAt(data, [section]), (name) => used.has(name));
   return {
-    name: names[0] ?? "part",
+    name: [...Object.keys(bodies), ...linked][0] ?? "",
+    ground: bodyNames(data).find((name) => !moves(name)) ?? "world",
     bodies,
-    closures,
+    links,
+    switches,
     parameters: ofSection("parameters"),
     inputs: ofSection("inputs"),
   };
@@ -56,16 +66,16 @@ function mounted(body: Json, names: ReadonlyMap<string, string>, known: Set<stri
   return { ...body, joint: { ...joint, ...place } };
 }
 
-function anchored(closure: Json, names: ReadonlyMap<string, string>): Json {
-  const end = (key: string): JsonMap => {
-    const anchor = mapAt(closure, [key]);
-    return { ...anchor, body: names.get(textAt(anchor, ["body"]) ?? "") ?? null };
-  };
-  return isMap(closure) ? { ...closure, first: end("first"), second: end("second") } : closure;
+/** A link whose ends are on other bodies. */
+function anchored(link: Json, names: ReadonlyMap<string, string>): Json {
+  if (!isMap(link)) return link;
+  const end = (key: string, item: Json): Json =>
+    key === "body" && typeof item === "string" ? (names.get(item) ?? item) : anchored(item, names);
+  return Object.fromEntries(Object.entries(link).map(([key, item]) => [key, end(key, item)]));
 }
 
-/** Edits that put a part into a document, and the names its bodies have there. Parameters that are there are shared. */
-export function insertion(data: JsonMap, part: Part): { edits: Edit[]; bodies: Map<string, string> } {
+/** Edits that put a part into a document, and the ids of what they add. Parameters that are there are shared. */
+export function insertion(data: JsonMap, part: Part): { edits: Edit[]; ids: string[] } {
   const known = new Set(bodyNames(data));
   const bodies = new Map<string, string>();
   for (const old of Object.keys(part.bodies)) bodies.set(old, fresh(old, [...known, ...bodies.values()]));
@@ -79,11 +89,19 @@ export function insertion(data: JsonMap, part: Part): { edits: Edit[]; bodies: M
     const body = mounted(renamed(value, joints), bodies, known);
     return { op: "set", path: ["bodies", bodies.get(old) ?? old], value: body };
   });
-  const taken = Object.keys(mapAt(data, ["closures"]));
-  const closures = Object.entries(part.closures).map(([old, value]): Edit => {
-    const name = fresh(old, taken);
-    taken.push(name);
-    return { op: "set", path: ["closures", name], value: anchored(value, bodies) };
-  });
-  return { edits: [...missing("parameters"), ...missing("inputs"), ...added, ...closures], bodies };
+  const ends = new Map([...(known.has(part.ground) ? [] : [[part.ground, "world"] as const]), ...bodies]);
+  const switches: Edit[] = [];
+  // A switch names its constraint, of whatever section.
+  const taken = [...LINKING, "switches"].flatMap((section) => Object.keys(mapAt(data, [section])));
+  const links = LINKING.flatMap((section) =>
+    Object.entries(mapAt(part.links, [section])).map(([old, value]): Edit => {
+      const name = fresh(old, taken);
+      taken.push(name);
+      const held = part.switches[old];
+      if (held !== undefined) switches.push({ op: "set", path: ["switches", name], value: held });
+      return { op: "set", path: [section, name], value: anchored(renamed(value, joints), ends) };
+    }),
+  );
+  const ids = [...added, ...links].map(({ path }) => path.join("/"));
+  return { edits: [...missing("parameters"), ...missing("inputs"), ...added, ...links, ...switches], ids };
 }

@@ -1,20 +1,24 @@
-/** What refers to a body, and cannot be without it. */
+/** What refers to bodies, and cannot be without them. */
 
 import type { Json, JsonMap, Path } from "../api/types";
 import { isMap, mapAt } from "./paths";
 
-const SECTIONS = ["closures", "connections", "contacts", "nonholonomic"] as const;
+/** Sections of what stands between bodies, or on one. */
+export const LINKING = ["closures", "connections", "contacts", "nonholonomic"] as const;
 
-function mentions(value: Json, body: string): boolean {
-  if (!isMap(value)) return false;
-  return value["body"] === body || Object.values(value).some((item) => mentions(item, body));
+/** The bodies that an entry names at its ends. */
+export function bodiesIn(value: Json): string[] {
+  if (!isMap(value)) return [];
+  return Object.entries(value).flatMap(([key, item]) =>
+    key === "body" && typeof item === "string" ? [item] : bodiesIn(item),
+  );
 }
 
 /** Paths of the closures, connections, contacts and conditions on a body. */
 export function usesOf(data: JsonMap, body: string): Path[] {
-  return SECTIONS.flatMap((section) =>
+  return LINKING.flatMap((section) =>
     Object.entries(mapAt(data, [section]))
-      .filter(([, value]) => mentions(value, body))
+      .filter(([, value]) => bodiesIn(value).includes(body))
       .map(([name]) => [section, name]),
   );
 }

@@ -2,7 +2,7 @@
 
 import { openProperties } from "../canvas/open";
 import { remove } from "../store/elements";
-import { copy, paste } from "../store/clipboard";
+import { copy, duplicate, paste } from "../store/clipboard";
 import { redo, undo } from "../store/edits";
 import { browse, leave, save } from "../store/files";
 import { toggleFolds } from "../store/folding";
@@ -33,6 +33,7 @@ const WITH_CONTROL: Record<string, () => void> = {
     void remove(now().selected);
   },
   v: () => void paste(),
+  d: () => void duplicate(),
   g: () => void group(now().selected),
   a: () => {
     const { graph, diagram } = now().document ?? {};
@@ -61,7 +62,7 @@ function isFields(event: KeyboardEvent): boolean {
 }
 
 // What these mean elsewhere, such as copying text out of a table, is the browser's.
-const DIAGRAMS = ["c", "x", "v", "a", "Delete", "Backspace"];
+const DIAGRAMS = ["c", "x", "v", "d", "a", "Delete", "Backspace"];
 
 function isElsewhere(event: KeyboardEvent): boolean {
   const isDiagram =

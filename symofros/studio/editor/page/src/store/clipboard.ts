@@ -7,7 +7,7 @@ import { type BlockPart, blockInsertion, extractBlocks } from "../model/diagram_
 import { bodyNames } from "../model/names";
 import { isMap } from "../model/paths";
 import type { Places } from "../model/places";
-import { carrier, selectedBodies } from "./bodies";
+import { carrier } from "./bodies";
 import { change, editInTurn, place } from "./edits";
 import { ordered } from "./requests";
 import { notify, now, update } from "./store";
@@ -15,7 +15,7 @@ import { notify, now, update } from "./store";
 // What a copy in the clipboard is called: bodies of a mechanism, blocks of a diagram.
 const KEYS = { bodies: "symofros_part", blocks: "symofros_blocks" } as const;
 const SECTIONS = {
-  bodies: ["bodies", "closures", "parameters", "inputs"],
+  bodies: ["bodies", "links", "switches", "parameters", "inputs"],
   blocks: ["models", "blocks", "parts", "wires", "places"],
 } as const;
 const SHIFT = 40;
@@ -27,15 +27,28 @@ let copied: Copied | null = null;
 // How often it has been put in: copies do not lie upon each other.
 let pasted = 0;
 
-export function copy(): void {
+/** A copy of what is chosen; null where that can't be copied. */
+function extracted(): Copied | null {
   const { document, selected, places } = now();
-  if (document === null || selected.length === 0) return;
-  if (document.diagram !== null) copied = { kind: "blocks", part: extractBlocks(document.data, selected, places) };
-  else if (selectedBodies().length > 0) copied = { kind: "bodies", part: extract(document.data, selectedBodies()) };
-  else return;
-  pasted = 0;
-  const text = JSON.stringify({ [KEYS[copied.kind]]: copied.part }, null, 1);
+  if (document === null || selected.length === 0) return null;
+  if (document.diagram !== null) return { kind: "blocks", part: extractBlocks(document.data, selected, places) };
+  const part = extract(document.data, selected);
+  return part.name === "" ? null : { kind: "bodies", part };
+}
+
+export function copy(): void {
+  const given = extracted();
+  if (given === null) return;
+  [copied, pasted] = [given, 0];
+  const text = JSON.stringify({ [KEYS[given.kind]]: given.part }, null, 1);
   void navigator.clipboard?.writeText(text).catch(() => undefined);
+}
+
+/** Puts a copy of what is chosen beside it; what was copied before stays in the clipboard. */
+export async function duplicate(): Promise<void> {
+  const given = extracted();
+  if (given?.kind === "blocks") await insertBlocks(given.part, SHIFT);
+  else if (given !== null) await insert(given.part);
 }
 
 /** A copy out of text from the clipboard, which anybody may have written. */
@@ -67,23 +80,21 @@ export async function paste(): Promise<void> {
       rule: "bodies go into mechanisms, blocks into diagrams",
       remedy: "open a document of the other kind",
     });
-  } else if (given.kind === "blocks") await insertBlocks(given.part);
+  } else if (given.kind === "blocks") await insertBlocks(given.part, SHIFT * (pasted += 1));
   else await insert(given.part);
 }
 
 async function insert(part: Part): Promise<void> {
   let added: string[] = [];
   const isDone = await editInTurn(() => {
-    const { edits, bodies } = insertion(now().document?.data ?? {}, part);
-    added = [...bodies.values()];
+    const { edits, ids } = insertion(now().document?.data ?? {}, part);
+    added = ids;
     return { label: `insert ${part.name}`, edits };
   });
   if (isDone) choose(added);
 }
 
-async function insertBlocks(part: BlockPart): Promise<void> {
-  pasted += 1;
-  const shift = SHIFT * pasted;
+async function insertBlocks(part: BlockPart, shift: number): Promise<void> {
   let [ids, places]: [string[], Places] = [[], {}];
   const isDone = await editInTurn(() => {
     const { edits, places: found } = blockInsertion(now().document?.data ?? {}, part, shift);
@@ -94,11 +105,10 @@ async function insertBlocks(part: BlockPart): Promise<void> {
   });
   if (!isDone) return;
   if (Object.keys(places).length > 0) await place(places);
-  update({ selected: ids, sight: ids[0] === undefined ? null : { id: ids[0] } });
+  choose(ids);
 }
 
-function choose(bodies: readonly string[]): void {
-  const ids = bodies.map((name) => `bodies/${name}`);
+function choose(ids: string[]): void {
   update({ selected: ids, sight: ids[0] === undefined ? null : { id: ids[0] } });
 }
 
@@ -114,7 +124,7 @@ export async function insertPart(name: string, where?: Point): Promise<void> {
   if (!(await change("api/parts/insert", ask))) return;
   const added = bodyNames(now().document?.data ?? {}).filter((body) => !known.has(body));
   if (where !== undefined && added[0] !== undefined) await place({ [`bodies/${added[0]}`]: where });
-  choose(added);
+  choose(added.map((body) => `bodies/${body}`));
 }
 
 export async function fetchParts(): Promise<void> {

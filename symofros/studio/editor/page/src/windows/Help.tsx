@@ -1,8 +1,10 @@
 import { useState } from "react";
 
-import type { JsonMap, Path } from "../api/types";
+import { get } from "../api/client";
+import type { BlockItem, JsonMap, Path } from "../api/types";
 import { definition, field, label } from "../forms/schema";
 import { isMap, textAt } from "../model/paths";
+import { ordered } from "../store/requests";
 import { useStore } from "../store/store";
 
 /** What a window is about: the records of the schema that it shows, and the page of the documentation. */
@@ -15,7 +17,7 @@ const OF_SECTION: Record<string, Topic> = {
   bodies: { names: ["BodyEntry", "JointEntry", "InertiaEntry", "SolidEntry", "FrameEntry"], page: "docs/yaml.md" },
   closures: { names: ["ClosureEntry", "AnchorEntry"], page: "docs/howto/closed_loops.md" },
   connections: { names: ["ConnectionEntry", "AnchorEntry"], page: "docs/yaml.md" },
-  contacts: { names: ["ContactEntry", "AnchorEntry"], page: "docs/theory/rigid.md" },
+  contacts: { names: ["ContactEntry", "AnchorEntry"], page: "docs/howto/contact.md" },
   nonholonomic: { names: ["NonholonomicEntry", "KnifeEdgeEntry", "RollingEntry"], page: "docs/yaml.md" },
   system: { names: ["SystemEntry", "SwitchEntry"], page: "docs/yaml.md" },
   models: { names: [], page: "docs/diagrams.md, The file" },
@@ -26,30 +28,29 @@ const OF_SECTION: Record<string, Topic> = {
 
 const BEAM: Topic = { names: ["BeamEntry", "SectionEntry", "JointEntry", "FrameEntry"], page: "docs/theory/beams.md" };
 
-/** The class of a kind of blocks, by which the documentation calls it. */
-const className = (kind: string): string =>
-  kind
-    .split("_")
-    .map((word) => word.charAt(0).toUpperCase() + word.slice(1))
-    .join("")
-    .replace(/^Lqr$/, "LQR")
-    .replace(/Pd$/, "PD")
-    .replace(/Pid$/, "PID");
-
-function topicOf(path: Path, value: JsonMap): Topic {
+function topicOf(path: Path, value: JsonMap, block: BlockItem | undefined): Topic {
   const section = String(path[0]);
-  const kind = textAt(value, ["kind"]) ?? "";
-  if (section === "blocks") return { names: [kind], page: `docs/blocks.md, ${className(kind)}` };
+  if (section === "blocks") return { names: [textAt(value, ["kind"]) ?? ""], page: block?.page ?? "docs/blocks.md" };
   if (section === "bodies" && isMap(value["beam"])) return BEAM;
   return OF_SECTION[section] ?? { names: [], page: "docs/yaml.md" };
 }
 
-/** Where the documentation says more. */
+/** Where the documentation says more: a page, and after a comma a section of it, which is read here. */
 export function DocsPage({ page }: { page: string }) {
+  const [shown, setShown] = useState({ page: "", text: "" });
+  const read = (): void =>
+    void ordered(() => get<{ text: string }>(`api/docs?page=${encodeURIComponent(page)}`)).then(
+      (answer) => answer !== undefined && setShown({ page, text: answer.text }),
+    );
   return (
-    <p className="quiet docs-page">
-      In the documentation: <b>{page}</b>
-    </p>
+    <details className="docs-page" key={page} onToggle={({ currentTarget }) => currentTarget.open && read()}>
+      <summary className="quiet">
+        In the documentation: <b>{page}</b>
+      </summary>
+      <pre tabIndex={0} role="region" aria-label={page}>
+        {shown.page === page ? shown.text : ""}
+      </pre>
+    </details>
   );
 }
 
@@ -83,15 +84,15 @@ export function Help({ path, value }: { path: Path; value: JsonMap }) {
   const catalogue = useStore((state) => state.catalogue);
   const isDiagram = useStore((state) => state.document?.diagram !== null);
   const [open, setOpen] = useState(false);
-  const { names, page } = topicOf(path, value);
+  const block = catalogue?.diagram.palette.find((each) => each.kind === textAt(value, ["kind"]));
+  const { names, page } = topicOf(path, value, block);
   const root = (isDiagram ? catalogue?.diagram.schema : catalogue?.schema) ?? {};
-  const about = catalogue?.diagram.palette.find((each) => each.kind === textAt(value, ["kind"]))?.about;
   return (
     <details className="help" open={open} onToggle={(event) => setOpen(event.currentTarget.open)}>
       <summary>Help</summary>
       {open ? (
         <div className="help-text" tabIndex={0} role="region" aria-label="Help">
-          {about?.split(/\n{2,}/).map((paragraph) => (
+          {block?.about?.split(/\n{2,}/).map((paragraph) => (
             <p key={paragraph}>{paragraph.replaceAll(/\s+/g, " ")}</p>
           ))}
           {names.map((name) => (
