@@ -11,6 +11,7 @@ import shlex
 from collections.abc import Callable, Iterable, Sequence
 from dataclasses import dataclass, replace
 from itertools import chain, islice
+from typing import Self
 
 # Nobody reads more, and hostile files have millions.
 MAX_PROBLEMS = 100
@@ -78,20 +79,6 @@ class Problem:
     where: str = ""
     argument: Argument | None = None
     extra: str = ""
-
-    @classmethod
-    def of_extra(cls, what: str, found: str, rule: str, extra: str, instead: str = "") -> Problem:
-        """The problem that a package is not installed, which an extra brings.
-
-        Args:
-            what: What was asked.
-            found: What is missing.
-            rule: Why it is needed.
-            extra: The extra that brings it.
-            instead: What serves without it.
-        """
-        remedy = f"pip install 'symofros[{extra}]'"
-        return cls(what, found, rule, f"{remedy}, or {instead}" if instead else remedy, extra=extra)
 
     def in_shell(self, prefix: str = "--") -> Problem:
         """The same, its remedy with the option that a command has in the place of the argument.
@@ -179,6 +166,20 @@ class SymofrosError(Exception):
             problems = Problem(problems, found, rule, remedy, where, argument)
         self.problems: tuple[Problem, ...] = (problems,) if isinstance(problems, Problem) else tuple(problems)
         super().__init__(listed(self.problems))
+
+    @classmethod
+    def of_extra(cls, what: str, found: str, rule: str, extra: str, instead: str = "") -> Self:
+        """The error that a package is not installed, which an extra brings.
+
+        Args:
+            what: What was asked.
+            found: What is missing.
+            rule: Why it is needed.
+            extra: The extra that brings it.
+            instead: What serves without it.
+        """
+        remedy = f"pip install 'symofros[{extra}]'"
+        return cls(Problem(what, found, rule, f"{remedy}, or {instead}" if instead else remedy, extra=extra))
 
     @property
     def problem(self) -> Problem:

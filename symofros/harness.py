@@ -32,13 +32,11 @@ def folder_of(package: str) -> Path:
     for folder in (_PACKAGE / package, _PACKAGE.parent / package):
         if (folder / "__init__.py").is_file():
             return folder
-    raise SymofrosError(
-        Problem.of_extra(
-            f"no package '{package}'",
-            f"{_PACKAGE} is installed without it",
-            "a wheel of symofros, and a checkout, has it",
-            "validation",
-        )
+    raise SymofrosError.of_extra(
+        f"no package '{package}'",
+        f"{_PACKAGE} is installed without it",
+        "a wheel of symofros, and a checkout, has it",
+        "validation",
     )
 
 

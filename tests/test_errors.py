@@ -21,7 +21,7 @@ SOURCES = sorted(path for path in Path(sf.__file__).parent.rglob("*.py") if path
 
 
 # What takes the parts of a problem: errors of this package, but for those that are made of other things.
-_STATED = re.compile(r"(rules\.)?(Problem(\.of_extra)?|YamlFault|[A-Z]\w+Error)")
+_STATED = re.compile(r"(rules\.)?(Problem|YamlFault|[A-Z]\w+Error(\.of_extra)?)")
 _OWN = {"AlgebraicLoopError", "ConflictError", "ConsentError", "EngagedApartError", "ExpressionError", "LineError"}
 _OTHERS = {"PydanticCustomError", *_OWN, *dir(builtins)}
 

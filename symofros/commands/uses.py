@@ -144,7 +144,7 @@ def edit(
         if error.name not in ("starlette", "uvicorn", "anyio"):
             raise
         missing = f"no module {error.name}", "the editor is an extra", "gui"
-        raise refuse(sf.SymofrosError(sf.Problem.of_extra("edit: a package is not installed", *missing))) from None
+        raise refuse(sf.SymofrosError.of_extra("edit: a package is not installed", *missing)) from None
     try:
         if model is None or model.suffix.lower() in YAML_SUFFIXES:
             reading.require_none("a native file is opened as it stands")

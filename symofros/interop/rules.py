@@ -8,7 +8,7 @@ from typing import Any, NamedTuple
 
 import numpy as np
 
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.runtime.model import Model
 from symofros.runtime.record import ModelRecord
 
@@ -74,13 +74,11 @@ def framework(name: str, extra: str) -> Any:
     except ModuleNotFoundError as error:
         if error.name != name:
             raise
-        raise InteropError(
-            Problem.of_extra(
-                f"symofros.interop.{extra} needs the package '{name}'",
-                "it is not installed",
-                "each framework is an extra",
-                extra,
-            )
+        raise InteropError.of_extra(
+            f"symofros.interop.{extra} needs the package '{name}'",
+            "it is not installed",
+            "each framework is an extra",
+            extra,
         ) from None
 
 

@@ -16,7 +16,7 @@ from symofros.blocks.checks import refuse
 from symofros.blocks.fmu import fmu_worker
 from symofros.description.workers import answer_of
 from symofros.diagrams.block import Port
-from symofros.errors import DescriptionError, Problem, did_you_mean
+from symofros.errors import DescriptionError, did_you_mean
 
 _TIMEOUT = 60.0  # [s]
 _WORD = re.compile(r"\W+", re.ASCII)
@@ -82,10 +82,9 @@ def unit_description(block: str, file: str) -> UnitDescription:
         DescriptionError: There is no such unit, it can't be read, or FMPy is missing.
     """
     if find_spec("fmpy") is None:
-        problem = Problem.of_extra(
+        raise DescriptionError.of_extra(
             f"block '{block}' needs FMPy", "no package fmpy", "units are read and run by FMPy", "fmi"
         )
-        raise DescriptionError(problem)
     try:
         known = os.stat(file)
     except OSError as error:

@@ -20,7 +20,7 @@ from symofros.blocks.network.exchange import MAX_TAKEN, Exchange, Receiver, Rece
 from symofros.blocks.network.packets import pack
 from symofros.diagrams.block import Environment
 from symofros.diagrams.external_block import Running
-from symofros.errors import DescriptionError, Problem, SymofrosError
+from symofros.errors import DescriptionError, SymofrosError
 
 _ADDRESS = "127.0.0.1:7447"
 
@@ -156,13 +156,11 @@ def _opened(block: _ByZenoh, declare: Callable[[Any], Any]) -> tuple[Any, Any]:
     try:
         zenoh = import_module("zenoh")
     except ImportError:
-        raise SymofrosError(
-            Problem.of_extra(
-                f"block '{name}': Zenoh is not installed",
-                "no module zenoh",
-                "network blocks of middleware are an extra",
-                "network",
-            )
+        raise SymofrosError.of_extra(
+            f"block '{name}': Zenoh is not installed",
+            "no module zenoh",
+            "network blocks of middleware are an extra",
+            "network",
         ) from None
     config = zenoh.Config()
     ends, listens = [f"tcp/{address}"], block.listens

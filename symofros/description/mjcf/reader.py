@@ -108,13 +108,11 @@ def compiled(document: Document, remarks: Remarks) -> Any:
     try:
         import mujoco  # Only those who read MJCF need it.
     except ImportError as error:
-        raise DescriptionError(
-            Problem.of_extra(
-                f"'{document.stated.file}' can't be read: MJCF needs MuJoCo",
-                str(error),
-                "MuJoCo's own compiler reads MJCF files",
-                "mjcf",
-            )
+        raise DescriptionError.of_extra(
+            f"'{document.stated.file}' can't be read: MJCF needs MuJoCo",
+            str(error),
+            "MuJoCo's own compiler reads MJCF files",
+            "mjcf",
         ) from None
     try:
         with _warnings(mujoco, remarks):

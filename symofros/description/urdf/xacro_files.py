@@ -44,13 +44,11 @@ def expanded(path: str | os.PathLike[str], arguments: Mapping[str, str], package
     if answer.get("package"):  # Neighbours are looked at once a file asks for another package than its own.
         answer = _answer({**task, "packages": _texts(packages.named)})
     if "absent" in answer:
-        raise DescriptionError(
-            Problem.of_extra(
-                f"'{path}' can't be read: xacro is not installed",
-                "no module 'xacro'",
-                "xacro expands .xacro files",
-                "xacro",
-            )
+        raise DescriptionError.of_extra(
+            f"'{path}' can't be read: xacro is not installed",
+            "no module 'xacro'",
+            "xacro expands .xacro files",
+            "xacro",
         )
     if name := answer.get("package", ""):
         raise DescriptionError(_unknown_package(name, packages, path))

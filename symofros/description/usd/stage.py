@@ -35,13 +35,11 @@ def stage_of(path: str | os.PathLike[str]) -> dict[str, Any]:
     read_bytes(file, MAX_BYTES)
     answer = _answer(str(resolved(file)))
     if "absent" in answer:
-        raise DescriptionError(
-            Problem.of_extra(
-                f"'{path}' can't be read: usd-core is not installed",
-                "no module 'pxr'",
-                "OpenUSD reads the layers of a stage",
-                "usd",
-            )
+        raise DescriptionError.of_extra(
+            f"'{path}' can't be read: usd-core is not installed",
+            "no module 'pxr'",
+            "OpenUSD reads the layers of a stage",
+            "usd",
         )
     _refuse_outside(file, answer.get("layers", ()))
     if missing := tuple(_missing(text, path) for text in answer.get("missing", ())):

@@ -16,7 +16,7 @@ from uuid import UUID
 
 from symofros.base.c_text import c_string, comment, strings
 from symofros.diagrams.diagram import Diagram
-from symofros.errors import ExportError, Problem
+from symofros.errors import ExportError
 from symofros.exports.c.c_package import model_files
 from symofros.exports.c.compiling import shared_library
 from symofros.exports.c.event_plan import refuse_ends
@@ -163,13 +163,11 @@ def fmi_headers() -> Path:
     """
     spec = importlib.util.find_spec("fmpy")
     if spec is None or spec.origin is None:
-        raise ExportError(
-            Problem.of_extra(
-                "an FMU needs the headers of the FMI standard",
-                "no package fmpy",
-                "they are read from the package FMPy",
-                "fmi",
-            )
+        raise ExportError.of_extra(
+            "an FMU needs the headers of the FMI standard",
+            "no package fmpy",
+            "they are read from the package FMPy",
+            "fmi",
         )
     return Path(spec.origin).parent / "c-code"
 

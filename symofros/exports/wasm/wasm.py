@@ -13,7 +13,7 @@ from html import escape
 from pathlib import Path
 from string import Template
 
-from symofros.errors import CompileError, Problem
+from symofros.errors import CompileError
 from symofros.exports.c.c_package import SELFTEST_TOLERANCE, model_files
 from symofros.exports.c.plant import selftest_text
 from symofros.exports.c.unity import unity
@@ -85,13 +85,11 @@ def check_compiler() -> None:
         CompileError: There is no ziglang package.
     """
     if importlib.util.find_spec("ziglang") is None:
-        raise CompileError(
-            Problem.of_extra(
-                "no compiler for WebAssembly was found",
-                "the package ziglang is not installed",
-                "modules are compiled by the C compiler of ziglang",
-                "zig",
-            )
+        raise CompileError.of_extra(
+            "no compiler for WebAssembly was found",
+            "the package ziglang is not installed",
+            "modules are compiled by the C compiler of ziglang",
+            "zig",
         )
 
 

@@ -12,7 +12,7 @@ from functools import cache
 from importlib.util import find_spec
 from pathlib import Path
 
-from symofros.errors import CompileError, Problem
+from symofros.errors import CompileError
 
 _ARCHITECTURE = re.compile(r"sm_\d{2,3}a?")
 # What `ptxas -v` says of each entry: its own frame, then that of the functions that it calls.
@@ -128,13 +128,11 @@ def _library() -> ctypes.CDLL:
             return ctypes.CDLL(name)
         except OSError:
             continue
-    raise CompileError(
-        Problem.of_extra(
-            "CUDA: no compiler",
-            f"no package of NVIDIA that has NVRTC, nor libnvrtc.so of CUDA {' or '.join(map(str, _VERSIONS))}",
-            "kernels are compiled by NVRTC, which needs no graphics processor",
-            "cuda",
-        )
+    raise CompileError.of_extra(
+        "CUDA: no compiler",
+        f"no package of NVIDIA that has NVRTC, nor libnvrtc.so of CUDA {' or '.join(map(str, _VERSIONS))}",
+        "kernels are compiled by NVRTC, which needs no graphics processor",
+        "cuda",
     )
 
 

@@ -11,7 +11,7 @@ from typing import Any
 
 from symofros.base.arrays import Array
 from symofros.base.stored import check_writable, write_atomically
-from symofros.errors import Problem, SymofrosError, UnknownNameError, did_you_mean
+from symofros.errors import SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.model import Model
 
 MAX_CURVES = 12  # In one panel; more can't be distinguished.
@@ -60,10 +60,9 @@ def figure_class() -> Any:
     try:
         return import_module("symofros.simulation.results.notebook_figure").NotebookFigure
     except ImportError:
-        missing = Problem.of_extra(
+        raise SymofrosError.of_extra(
             "plot: Matplotlib is not installed", "no module matplotlib", "pictures are an extra", "plots"
-        )
-        raise SymofrosError(missing) from None
+        ) from None
 
 
 def draw(t: Array, panels: Sequence[Panel], title: str, figure: Any = None) -> Any:

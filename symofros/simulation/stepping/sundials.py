@@ -18,7 +18,7 @@ import numpy.typing as npt
 
 from symofros.base.arrays import Array
 from symofros.base.measures import Measures
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.runtime.constrained import eliminate, natural_sizes
 from symofros.simulation.stepping.event_search import EventSearch, MetEvent
 from symofros.simulation.stepping.status import Status
@@ -54,14 +54,12 @@ def _solver(module: str, name: str) -> Callable[..., Any]:
     try:
         solver: Callable[..., Any] = getattr(import_module(f"sksundae.{module}"), name)
     except (ImportError, OSError, AttributeError) as error:
-        raise SymofrosError(
-            Problem.of_extra(
-                f"simulation: {name} is not installed",
-                str(error),
-                "SUNDIALS comes with the package scikit-sundae",
-                "sundials",
-                "use rodas4 or dop853",
-            )
+        raise SymofrosError.of_extra(
+            f"simulation: {name} is not installed",
+            str(error),
+            "SUNDIALS comes with the package scikit-sundae",
+            "sundials",
+            "use rodas4 or dop853",
         ) from None
     return solver
 

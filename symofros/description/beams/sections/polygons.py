@@ -135,7 +135,7 @@ def _geometry(rings: tuple[tuple[Point, ...], ...], poisson: float) -> _Geometry
         from shapely import Polygon  # Of the same extra.
     except ImportError:
         found, rule = "no module sectionproperties", "sections of this outline are meshed"
-        raise DescriptionError(Problem.of_extra("section: no mesher is installed", found, rule, "sections")) from None
+        raise DescriptionError.of_extra("section: no mesher is installed", found, rule, "sections") from None
     region = Polygon(rings[0], rings[1:])
     if not region.is_valid or not region.area > 0.0:
         raise DescriptionError(_unusable(f"area {region.area:g}", "outlines enclose an area and do not cross"))

@@ -9,7 +9,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.base.arrays import Array
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 
 Faces = npt.NDArray[np.int64]
 Colors = npt.NDArray[np.int16]
@@ -115,10 +115,9 @@ def _creation() -> Any:
     try:
         return import_module("trimesh.creation")
     except ImportError:
-        missing = Problem.of_extra(
+        raise SymofrosError.of_extra(
             "view: trimesh is not installed", "no module trimesh", "the viewer is an extra", "view"
-        )
-        raise SymofrosError(missing) from None
+        ) from None
 
 
 def _vertices(solid: Any) -> Array:

@@ -10,7 +10,7 @@ from contextlib import contextmanager
 from importlib import import_module
 from typing import Any
 
-from symofros.errors import Problem, SymofrosError
+from symofros.errors import SymofrosError
 from symofros.studio.viewer.page.viewer_guard import ViewerGuard
 
 _STARTING = threading.Lock()
@@ -27,8 +27,9 @@ def load_viser() -> Any:
     try:
         return import_module("viser")
     except ImportError:
-        missing = Problem.of_extra("view: viser is not installed", "no module viser", "the viewer is an extra", "view")
-        raise SymofrosError(missing) from None
+        raise SymofrosError.of_extra(
+            "view: viser is not installed", "no module viser", "the viewer is an extra", "view"
+        ) from None
 
 
 def start_server(
@@ -69,7 +70,7 @@ def start_server(
     if not guard.is_asked:
         stop_server(server)
         what, rule = "view: viser can't be guarded", "its server asks before it answers, by `websockets`"
-        raise SymofrosError(Problem.of_extra(what, f"viser {viser.__version__}", rule, "view"))
+        raise SymofrosError.of_extra(what, f"viser {viser.__version__}", rule, "view")
     return server
 
 

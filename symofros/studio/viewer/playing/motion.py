@@ -187,14 +187,8 @@ def _read_parquet(file: Path, model: Model) -> PlayedMotion:
     try:
         parquet = import_module("pyarrow.parquet")
     except ImportError:
-        raise SymofrosError(
-            Problem.of_extra(
-                "trajectory: Parquet needs pyarrow",
-                "it is not installed",
-                "pyarrow reads Parquet",
-                "parquet",
-                "use .npz",
-            )
+        raise SymofrosError.of_extra(
+            "trajectory: Parquet needs pyarrow", "it is not installed", "pyarrow reads Parquet", "parquet", "use .npz"
         ) from None
     with parquet.ParquetFile(file) as stored:
         wanted = {TIME, *map(symbol_of, model.names.q), *model.names.u, *(f"u.{name}" for name in model.names.u)}
