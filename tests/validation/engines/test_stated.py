@@ -8,15 +8,21 @@ import numpy as np
 import pytest
 from numpy.typing import NDArray
 
+from tests.late import needs_extra
 from validation.engines.functions.arms import ARMS
 from validation.engines.interface import Slot, State
+from validation.engines.matrix import SEED, Truths, asked, judged
 from validation.engines.models import stated
+from validation.engines.plugins import OWN
 from validation.engines.plugins.roboticstoolbox import denavit
 from validation.engines.plugins.writing.source import Source
 from validation.engines.proving.pieces import Layout
 from validation.engines.tree import BASE, DENAVIT, MODIFIED
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
 from validation.engines.truth.kinematics import Kinematics
+from validation.engines.truth.points import POINT
+from validation.engines.verdicts import RED, judge
+from validation.engines.workers import Job
 
 Array = NDArray[np.float64]
 _TREES = stated.trees()
@@ -63,6 +69,28 @@ def test_the_end_of_an_arm_moves_as_its_jacobian_says() -> None:
     before, after = (_of("end_jacobian", replace(_STATE, q=_STATE.q + sign * size * _STATE.v)) for sign in (-1, 1))
     np.testing.assert_allclose(_of("end_jacobian_rate"), (after - before) / (2 * size), atol=1e-8)
     np.testing.assert_allclose(_of("end_jacobian_dq") @ _STATE.v, _of("end_jacobian_rate"), atol=1e-12)
+
+
+@pytest.mark.parametrize("engine", ["dart", "drake", "roboticstoolbox"])
+def test_solutions_reach_their_goals_and_a_start_is_none(engine: str) -> None:
+    plugin, tree = OWN[engine], _TREES["goals of seven hinges"]
+    if not plugin.version():
+        pytest.skip(needs_extra(f"engine-{engine}", engine))
+    names = [name for name in asked(plugin, tree) if name.startswith("goal_pose")]
+    found = {one.cell.function: one for one in judged(plugin, Job(engine, tree, tuple(names), SEED), Truths())}
+    assert len(names) == len(found) and {one.cell.verdict for one in found.values()} == {"right"}
+    one = found[names[-1]]
+    assert one.want is not None and one.answer.state is not None and one.answer.layout is not None
+    near = replace(one.answer.state, q2=one.answer.state.q2 + np.tanh(one.answer.state.v) / 4)
+    start = digits(Truth(tree, one.answer.layout).value(ARMS["goal_pose"].truth, Point.of(near)))
+    assert judge("planted", tree, "goal_pose", start, one.want).verdict in RED
+
+
+def test_goals_are_parts_of_one_pose() -> None:
+    pose = _of("end_pose", replace(_STATE, q=_STATE.q2))
+    np.testing.assert_array_equal(_of("goal_pose"), pose)
+    np.testing.assert_array_equal([*_of("goal_place"), *_of("goal_turn")], pose)
+    np.testing.assert_allclose(_of("goal_point"), pose[:3] + pose[3:].reshape(3, 3) @ POINT, atol=1e-15)
 
 
 def test_manipulability_is_a_determinant_and_has_its_slopes() -> None:

@@ -3,6 +3,7 @@
 from __future__ import annotations
 
 from ..truth import arms
+from ..truth.points import POINT
 from .function import Function, functions_of
 
 
@@ -36,4 +37,16 @@ def _arms() -> dict[str, Function]:
     return functions_of(rows, "arms")
 
 
-ARMS = _arms()
+def _goals() -> dict[str, Function]:
+    """What a solver of inverse kinematics reaches where it says that it has; it begins at q2 + tanh(v) / 4."""
+    of = "of the last link at the solution, of the goal that it has"
+    rows = {
+        "goal_pose": (f"position and rows of the rotation {of} the pose at q2 (12)", arms.goal_pose),
+        "goal_place": (f"position {of} the position at q2, turned any way (3)", arms.goal_place),
+        "goal_turn": (f"rows of the rotation {of} the rotation at q2, anywhere (9)", arms.goal_turn),
+        "goal_point": (f"place of the point {POINT} {of} its place at q2, turned any way (3)", arms.goal_point),
+    }
+    return functions_of(rows, "goals")
+
+
+ARMS = _arms() | _goals()

@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+from collections.abc import Iterable
+
 from ..truth import steps
 from .function import Function
 
@@ -35,11 +37,28 @@ def _steps() -> dict[str, Function]:
     return {f"step_{name}": Function(f"{after} {text}", truth) for name, (text, truth) in rows.items()}
 
 
+def _derivatives(names: Iterable[str]) -> dict[str, Function]:
+    """Derivatives of steps, of trees that forces act on, by where they begin and by forces."""
+    acted_on = ("dampers", "springs", "tendons", "actuators")
+    made = {}
+    for name in names:
+        step = STEPS[name].truth
+        made[f"{name}_derivative"] = Function(
+            "derivative of q+, v+ of that step by q, v along speeds (2 nv, 2 nv)", steps.derivative(step), acted_on
+        )
+        made[f"{name}_force_derivative"] = Function(
+            "derivative of q+ along speeds and v+ of that step by tau (2 nv, nv)", steps.by_forces(step), acted_on
+        )
+    return made
+
+
 STEPS = _steps()
-STEPS["step_dampers_implicit_derivative"] = Function(
-    "derivative of q+, v+ of that step by q, v along speeds (2 nv, 2 nv)",
-    steps.derivative(STEPS["step_dampers_implicit"].truth),
-    ("dampers", "springs", "tendons", "actuators"),
+STEPS |= _derivatives(
+    f"step_{name}"
+    for name in (
+        *("dampers_implicit", "forces_implicit", "velocities_implicit"),
+        *("dampers_implicit_straight", "stiffness_implicit_straight"),
+    )
 )
 STEPS["step_dampers_implicit_control_derivative"] = Function(
     "derivative of q+ along speeds and v+ of that step by the controls (2 nv, nu)",

@@ -79,7 +79,7 @@ def _based(name: str, *kinds: str) -> Tree:
     draw = np.random.default_rng([ord(letter) for letter in name])
     axes = ((0.0, 0.0, 1.0), (0.0, 1.0, 0.0), (1.0, 0.0, 0.0))
     joints = [placed(draw, Joint(kind, axis=axes[k % 3])) for k, kind in enumerate(kinds)]
-    return Tree(name, tuple(link(draw, "abcdef"[k], k - 1, joint) for k, joint in enumerate(joints)), stated=BASE)
+    return Tree(name, tuple(link(draw, "abcdefg"[k], k - 1, joint) for k, joint in enumerate(joints)), stated=BASE)
 
 
 def _gripped() -> Tree:
@@ -106,6 +106,8 @@ def trees() -> dict[str, Tree]:
         _based("hinges on a turned base", *["revolute"] * 3),
         _based("slide and hinges on a turned base", "prismatic", "revolute", "revolute"),
     )
+    bent = _based("slides and hinges", "prismatic", "revolute", "revolute", "prismatic", "revolute", "revolute")
+    seven = _based("seven hinges", *["revolute"] * 7)
     six = replace(_based("arm with a tool", *["revolute"] * 6), stated="")
     made = (
         *(replace(one, name=one.name.replace("chain", "hinge"), links=one.links[:1]) for one in (short, other)),
@@ -123,6 +125,7 @@ def trees() -> dict[str, Tree]:
         replace(hinges, name=f"{hinges.name}, gravity aside", gravity=aside),
         _gripped(),
         _with_tool(six),
+        *(replace(one, name=f"goals of {one.name}", stated="", asked="goals") for one in (six, bent, seven)),
         *(_with_tool(_chain(f"arm by {stated}, with a tool", _ARM, stated)) for stated in (DENAVIT, MODIFIED)),
     )
     return {tree.name: tree for tree in made}

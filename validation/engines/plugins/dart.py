@@ -11,11 +11,11 @@ import numpy as np
 from ..interface import STEP, Array, Convention, Joint, Link, Slot, Statement, Tree, Unsupported
 from . import features, turns
 from .features import dart_features
-from .loops import dart_bound, dart_frames, dart_joints
+from .loops import dart_bound, dart_frames, dart_joints, goals
 from .turns import dart as turning
 from .writing import copies
 from .writing.numbering import numbered
-from .writing.source import Source, SourcePlugin, Way, series, ways_of
+from .writing.source import NO_SOLUTION, Source, SourcePlugin, Way, series, ways_of
 from .writing.urdf import UNIT_AXIS, has_bare_link
 
 
@@ -323,6 +323,7 @@ PLUGIN = SourcePlugin(
     | dart_bound.WAYS
     | copies.of_model(WAYS, _COPIED)
     | dart_joints.WAYS
+    | goals.DART
     | turning.WAYS
     | dart_features.WAYS,
     write=write,
@@ -331,6 +332,7 @@ PLUGIN = SourcePlugin(
     write_reading=write_reading,
     demands={
         **features.DART,
+        "goals": "InverseKinematics",
         "turns": "rotations and placements",
         "sensors": "SimpleFrame",
         "a bound pair": "WeldJointConstraint, BallJointConstraint",
@@ -342,7 +344,7 @@ PLUGIN = SourcePlugin(
         "changed gravity": "setGravity",
     },
     # Its parsers return no skeleton, and write why to the log.
-    refusals=("no skeleton: see the log",),
+    refusals=("no skeleton: see the log", NO_SOLUTION),
     statements=(
         Statement(
             "precondition",

@@ -16,10 +16,11 @@ from .loops import drake_forces as forces
 from .loops import drake_gradients as gradients
 from .loops import drake_objects as objects
 from .loops import drake_points as points
+from .loops import goals
 from .loops.drake_forces import FORCES, QV, Q
 from .turns import drake as turning
 from .writing import copies, urdf
-from .writing.source import Source, SourcePlugin, series, ways_of
+from .writing.source import NO_SOLUTION, Source, SourcePlugin, series, ways_of
 from .writing.urdf import MESH_WITHIN, UNIT_AXIS
 
 
@@ -349,6 +350,7 @@ PLUGIN = SourcePlugin(
         | copies.of_model(WAYS, _COPIED, _OF_COPIES)
         | gradients.WAYS
         | points.WAYS
+        | goals.DRAKE
         | objects.WAYS
         | forces.WAYS
         | turning.WAYS
@@ -359,11 +361,13 @@ PLUGIN = SourcePlugin(
         | drake_curves.WAYS
     ),
     write=write,
+    refusals=(NO_SOLUTION,),
     constraints={kind: add for kind, (add, _) in _BINDINGS.items()},
     formats=tuple(_PARSERS),
     write_reading=write_reading,
     demands={
         **features.DRAKE,
+        "goals": "InverseKinematics",
         "turns": "rotations and placements",
         "sensors": "Accelerometer, Gyroscope",
         "a bound pair": "AddWeldConstraint, AddBallConstraint",

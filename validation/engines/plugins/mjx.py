@@ -44,6 +44,29 @@ def stepped(q, v, tau, **options):
     for name, value in options.items(): setattr(n.opt, name, value)
     if (name := str(options)) not in steps: steps[name] = mjx.put_model(n)
     return jax.jit(mjx.step)(steps[name], empty.replace(qpos=q, qvel=v, qfrc_applied=tau))
+def slopes(q, v, tau, way, **options):
+    after = np.array(stepped(q, v, tau, **options).qpos)
+    def end(model, q, v, tau):
+        e = mjx.step(model, empty.replace(qpos=q, qvel=v, qfrc_applied=tau))
+        return jax.numpy.concatenate([e.qpos, e.qvel])
+    compiled = steps.setdefault(way, jax.jit(way(end, (1, 2, 3))))
+    by_q, by_v, by_tau = (np.array(one) for one in compiled(steps[str(options)], q, v, tau))
+    N = along(after)
+    back = np.linalg.solve(N.T @ N, N.T)
+    D = np.hstack([by_q @ along(q), by_v, by_tau])
+    return np.vstack([back @ D[:m.nq], D[m.nq:]])
+def along(q):
+    N = np.zeros((m.nq, m.nv))
+    for kind, i, k in zip(m.jnt_type, m.jnt_qposadr, m.jnt_dofadr):
+        kind = mj.mjtJoint(kind)
+        if kind == mj.mjtJoint.mjJNT_FREE:
+            N[i:i + 3, k:k + 3] = np.eye(3)
+            i, k = i + 3, k + 3
+        if kind in (mj.mjtJoint.mjJNT_FREE, mj.mjtJoint.mjJNT_BALL):
+            w, x, y, z = q[i:i + 4]
+            N[i:i + 4, k:k + 3] = np.array([[-x, -y, -z], [w, -z, y], [z, w, -x], [-y, x, w]]) / 2
+        else: N[i, k] = 1.0
+    return N
 def bound(q, v, tau):
     m.eq_solref[:] = 0.0
     m.opt.jacobian, m.opt.tolerance = mj.mjtJacobian.mjJAC_DENSE, 0.0
@@ -121,6 +144,12 @@ def _step(integrator: str) -> Way:
     return Way(f"step, {integrator}", f"{code}\nvalue = np.r_[np.array(e.qpos), np.array(e.qvel)]")
 
 
+def _slopes(way: str, columns: str) -> Way:
+    """Derivatives of a step by JAX, coordinates along speeds."""
+    given = f"jax.{way}, integrator=mj.mjtIntegrator.mjINT_EULER"
+    return Way(f"{way} of step", f"value = slopes(q, v, tau, {given})[{columns}]")
+
+
 # Rows of constraints as MuJoCo's own data turn them (`axes`).
 _BOUND = {
     "constraint_jacobian": Way("efc_J", "e = bound(q, v, tau)\nvalue = axes() @ got(e, 'efc_J')"),
@@ -144,6 +173,11 @@ _BOUND = {
 _STEPS = {
     "step_dampers_implicit": _step("mjINT_EULER"),
     "step_forces_implicit": _step("mjINT_IMPLICITFAST"),
+}
+_SLOPES = {
+    "step_dampers_implicit_derivative": _slopes("jacfwd", ":, :2 * m.nv"),
+    "step_dampers_implicit_derivative:jacrev": _slopes("jacrev", ":, :2 * m.nv"),
+    "step_dampers_implicit_force_derivative": _slopes("jacfwd", ":, 2 * m.nv:"),
 }
 WAYS = {
     "mass_matrix": Way("full_m", "value = forward(q, v, tau)[1]"),
@@ -196,6 +230,7 @@ WAYS = {
         "from mujoco.mjx._src.support import jac_dot\nvalue = of_links(jac_dot, forward(q, v, tau)[0])",
     ),
     **_STEPS,
+    **_SLOPES,
     **_BOUND,
 }
 
@@ -228,6 +263,9 @@ def write(tree: Tree) -> Source | Unsupported:
         optional["sensed"] = tuple(line.format(count=len(tree.sensors)) for line in _SENSED)
     # What is compiled by itself takes seconds: it is asked of trees that forces act on, or that have sensors.
     lacks = () if tree.forces else tuple(_STEPS) if tree.sensors else (*_STEPS, "inverse_dynamics_acted")
+    # Derivatives take longest: they are asked where JAX has most to divide by, of the few trees that turn any way.
+    turns_any_way = any(joint.kind in ("ball", "free") for link in tree.links for joint in link.joints)
+    lacks += () if turns_any_way and tree.forces <= {"dampers", "springs"} else tuple(_SLOPES)
     return replace(source, lines=(*source.lines, *setup.split("\n")), optional=optional, lacks=lacks)
 
 

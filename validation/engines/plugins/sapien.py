@@ -9,10 +9,11 @@ import numpy as np
 
 from ..interface import SINGLE, STEP, Array, Convention, Joint, Slot, Tree, Unsupported
 from . import turns
+from .loops import goals
 from .newton import quaternion
 from .turns import sapien as turning
 from .writing.numbering import numbered
-from .writing.source import Source, SourcePlugin, Way, series, ways_of
+from .writing.source import NO_SOLUTION, Source, SourcePlugin, Way, series, ways_of
 from .writing.urdf import UNIT_AXIS, Described, describe, of_files, slots_of
 
 # Its import warns of a system without Vulkan, which nothing here draws with.
@@ -244,12 +245,16 @@ PLUGIN = SourcePlugin(
         "prismatic": "prismatic",
         "prismatic oblique": "prismatic",
     },
-    ways=WAYS | turning.WAYS,
+    ways=WAYS | turning.WAYS | goals.SAPIEN,
     write=write,
     formats=("urdf",),
     write_reading=write_reading,
-    refusals=("failed to find a rendering device",),
-    demands={"turns": "rotations and placements", "actuators": "set_qf, set_drive_properties"},
+    refusals=("failed to find a rendering device", NO_SOLUTION),
+    demands={
+        "goals": "compute_inverse_kinematics",
+        "turns": "rotations and placements",
+        "actuators": "set_qf, set_drive_properties",
+    },
     statements=(UNIT_AXIS,),
     roundoff=SINGLE,
 )

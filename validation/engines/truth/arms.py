@@ -10,6 +10,7 @@ from .arithmetic import Exact, cross, exact, solve, stack, volume
 from .dynamics import Point, Truth
 from .geometry.poses import angles_of
 from .geometry.turns import of_angles
+from .points import POINT
 
 # A point that the last link with a joint carries: mass [kg] and place [m].
 BURDEN, AT = 2.0, (0.25, -0.5, 0.125)
@@ -58,6 +59,27 @@ def of_rpy(truth: Truth, s: Point) -> Exact:
 def _manipulability(J: Exact) -> Exact:
     # Of six joints, J is square: the root of det(J J^T) is |det J|.
     return volume(J)
+
+
+def goal_pose(truth: Truth, s: Point) -> Exact:
+    """Pose of the end at q2 (12)."""
+    return pose(truth, s._replace(q=s.q2))
+
+
+def goal_place(truth: Truth, s: Point) -> Exact:
+    """Position of the end at q2 (3)."""
+    return goal_pose(truth, s)[:3]
+
+
+def goal_turn(truth: Truth, s: Point) -> Exact:
+    """Rows of the rotation of the end at q2 (9)."""
+    return goal_pose(truth, s)[3:]
+
+
+def goal_point(truth: Truth, s: Point) -> Exact:
+    """Place of a point of the end at q2 (3)."""
+    R, p, _ = _end(truth, s.q2)
+    return p + R @ exact(POINT)
 
 
 def manipulability(truth: Truth, s: Point) -> Exact:

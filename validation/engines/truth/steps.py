@@ -68,10 +68,15 @@ def derivative(step: TruthOf) -> TruthOf:
 
 def by_controls(step: TruthOf) -> TruthOf:
     """The derivative (2 nv, nu) of where a step leads, along speeds, by the actuators' controls."""
+    forces = by_forces(step)
+    return lambda t, s: forces(t, s) @ t.own.by_controls(s.q, s.v)
+
+
+def by_forces(step: TruthOf) -> TruthOf:
+    """The derivative (2 nv, nv) of where a step leads, along speeds, by constant forces along the speeds."""
 
     def function(t: Truth, s: Point) -> Exact:
-        by_forces = t.along_speeds(lambda tau: step(t, s._replace(tau=tau)), s.tau)
-        return _along_speeds(t, step(t, s), by_forces @ t.own.by_controls(s.q, s.v))
+        return _along_speeds(t, step(t, s), t.along_speeds(lambda tau: step(t, s._replace(tau=tau)), s.tau))
 
     return function
 

@@ -112,7 +112,9 @@ def lacks(tree: Tree) -> tuple[str, ...]:
     is_stiff = has_servos(tree) and not tree.tendons and not any(joint.stiffness for joint in joints)
     of_dampers, of_servos = "step_dampers_implicit_straight", "step_stiffness_implicit_straight"
     is_whole = len(tree.actuators) == sum(joint.kind != "fixed" for joint in joints)
-    return (of_dampers if is_stiff else of_servos, *(() if is_whole else ("controlled_forces",)))
+    without = of_dampers if is_stiff else of_servos
+    steps = (without, f"{without}_derivative", f"{without}_force_derivative")
+    return (*steps, *(() if is_whole else ("controlled_forces",)))
 
 
 def _integrated(name: str) -> Way:

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ...interface import STEP
 from ..writing.source import Way
 from .drake_forces import QV
 
@@ -48,6 +49,28 @@ WAYS = {
         gradient("out = -ad.CalcGravityGeneralizedForces(d)", BY_Q),
     ),
 }
+# Where a discrete plant's step leads: coordinates along the speeds that they begin and end at.
+_DISCRETE = (
+    ("Plant(0.0)", f"Plant({STEP})"),
+    ("p.Finalize()", "p.SetUseSampledOutputPorts(False)\np.Finalize()"),
+)
+_LINEAR = f"""{QV}port = p.get_applied_generalized_force_input_port()
+port.FixValue(c, tau)
+linear = drake.FirstOrderTaylorApproximation(p, c, port.get_index(), drake.OutputPortSelection.kNoOutput)
+end, n = p.CreateDefaultContext(), len(v)
+p.SetPositionsAndVelocities(end, p.EvalUniquePeriodicDiscreteUpdate(c).value())
+def along_speeds(X): return np.vstack([np.stack([p.MapQDotToVelocity(end, x) for x in X[:-n].T], axis=1), X[-n:]])
+N = np.stack([p.MapVelocityToQDot(c, one) for one in np.eye(n)], axis=1)
+"""
+for _step in ("dampers_implicit_straight", "stiffness_implicit_straight"):
+    WAYS[f"step_{_step}_derivative"] = Way(
+        "FirstOrderTaylorApproximation: A",
+        f"{_LINEAR}A = linear.A()\nvalue = along_speeds(np.hstack([A[:, :-n] @ N, A[:, -n:]]))",
+        built=_DISCRETE,
+    )
+    WAYS[f"step_{_step}_force_derivative"] = Way(
+        "FirstOrderTaylorApproximation: B", f"{_LINEAR}value = along_speeds(linear.B())", built=_DISCRETE
+    )
 # Other scalars that carry the same numbers.
 _SCALARS = {"ToAutoDiffXd": "x.value()", "ToSymbolic": "x.Evaluate()"}
 _OF_SCALARS = {

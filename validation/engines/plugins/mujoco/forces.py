@@ -2,7 +2,7 @@
 
 from __future__ import annotations
 
-from ...interface import STEP
+from ...interface import STEP, Steps
 from ...truth.sensed import WRENCH
 from ..writing.source import Way, ways_of
 
@@ -37,6 +37,7 @@ SQUARE = "value = np.zeros((m.nv, m.nv))\n"
 # Options of a model of its own: what others are asked stays as it was.
 COPY = "from copy import copy\nn = copy(m)\n"
 SPARSE = "n.opt.jacobian = mj.mjtJacobian.mjJAC_SPARSE\n"
+_INTEGRATOR = "n.opt.integrator = mj.mjtIntegrator.mjINT_{}\n"
 EXPLICIT = "n.opt.disableflags = mj.mjtDisableBit.mjDSBL_EULERDAMP\n"
 
 
@@ -71,6 +72,15 @@ def _step(integrator: str, settings: str = "") -> Way:
     )
 
 
+_TRANSITIONS = {
+    f"step_{step}": Way("mjd_transitionFD", f"{transition(STEP, settings)}value = {rows}", Steps(of, 1e-6, 1e-9))
+    for step, of, settings, rows in (
+        ("dampers_implicit_derivative", "step_dampers_implicit", "", "A"),
+        ("dampers_implicit_control_derivative", "step_dampers_implicit", "", "B[:2 * m.nv]"),
+        ("velocities_implicit_derivative", "step_velocities_implicit", _INTEGRATOR.format("IMPLICIT"), "A"),
+        ("forces_implicit_derivative", "step_forces_implicit", _INTEGRATOR.format("IMPLICITFAST"), "A"),
+    )
+}
 WAYS = (
     {
         "step_dampers_implicit": _step("mjINT_EULER"),
@@ -80,11 +90,7 @@ WAYS = (
         "step_velocities_implicit:sparse": _step("mjINT_IMPLICIT", SPARSE),
         "step_forces_implicit:sparse": _step("mjINT_IMPLICITFAST", SPARSE),
     }
-    | ways_of(f"""
-== step_dampers_implicit_derivative ~ step_dampers_implicit 1e-06 1e-09 | mjd_transitionFD | {transition(STEP)}value = A
-== step_dampers_implicit_control_derivative ~ step_dampers_implicit 1e-06 1e-09 | mjd_transitionFD
-{transition(STEP)}value = B[:2 * m.nv]
-""")
+    | _TRANSITIONS
     | {
         # Tendons and actuators that couple joints are solved for by iterations.
         "step_stiffness_implicit_lone": _step("mjINT_DISCRETE", "n.opt.tolerance = 0.0\n"),

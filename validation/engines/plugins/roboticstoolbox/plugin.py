@@ -8,8 +8,9 @@ import numpy as np
 
 from ...interface import Array, Convention, Slot, Tree, Unsupported, Vector
 from ...tree import BASE, DENAVIT, GRIPPER, MODIFIED
+from ..loops import goals
 from ..writing.numbering import numbered
-from ..writing.source import Source, SourcePlugin, Way, ways_of
+from ..writing.source import NO_SOLUTION, Source, SourcePlugin, Way, ways_of
 from . import denavit
 from .denavit import lacking, pose, without_tool
 
@@ -219,15 +220,17 @@ PLUGIN = SourcePlugin(
         "revolute z": "ET.Rz",
         "prismatic": "ET.tx",
     },
-    ways=WAYS,
+    ways=WAYS | goals.ROBOTICS_TOOLBOX,
     demands={
         BASE: "base",
         DENAVIT: "DHRobot of RevoluteDH, PrismaticDH",
         MODIFIED: "DHRobot of RevoluteMDH, PrismaticMDH",
         GRIPPER: "gripper_links",
         "arms": "tool",
+        "goals": "ikine_LM, ik_LM",
     },
     write=write,
+    refusals=(NO_SOLUTION,),
     formats=("urdf",),
     write_reading=write_reading,
 )

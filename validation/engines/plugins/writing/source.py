@@ -46,6 +46,10 @@ on_end = [
 """
 
 
+# What the text of a way raises where an engine says that it has found no solution.
+NO_SOLUTION = "RuntimeError: no solution is found"
+
+
 class Way(NamedTuple):
     """How an engine does a function.
 

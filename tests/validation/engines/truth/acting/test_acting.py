@@ -180,6 +180,20 @@ def test_implicit_terms_of_a_step_are_the_derivative_of_forces(name: str) -> Non
     assert np.max(np.abs(digits(truth.value(excess, s)))) < 1e-30
 
 
+def test_a_step_changes_with_forces_as_its_implicit_terms_have_it() -> None:
+    """Of a servo along a hinge dv+ = h / (M + h d + h^2 p) dtau, and dq+ = h dv+."""
+    tree = TREES["servo along a hinge"]
+    (servo,), function = tree.actuators, STEPS["step_stiffness_implicit_straight_force_derivative"]
+    truth, s = _truth(tree)
+    M = float(digits(truth.value(lambda t, s: t.M(s.q), s))[0, 0])
+    damping = tree.links[-1].joints[0].damping - servo.bias[2]
+    slope = STEP / (M + STEP * damping - STEP * STEP * servo.bias[1])
+    np.testing.assert_allclose(digits(truth.value(function.truth, s)).ravel(), [STEP * slope, slope], rtol=1e-13)
+    ends = STEPS["step_stiffness_implicit_straight_derivative"].truth
+    (_, by_v), (_, v_by_v) = digits(truth.value(ends, s))
+    assert v_by_v < 1.0 and by_v == pytest.approx(STEP * v_by_v, rel=1e-13)
+
+
 CONTROLLED = ["affine gains", "muscles", "actuators clamped at their joints", "actuators at their limits"]
 
 
