@@ -168,8 +168,8 @@ def eliminate(G: Array, measures: Measures, inertia: Array, ranking: Ranking = D
         factor = np.zeros(nc)
         factor[changed] = left[changed, d] / left[p, d]
         own_factor = factor[changed][:, None]
-        of_pivot = size[p] if strong[p] else np.maximum(np.abs(left[p]), WEAK_SIZE * size[p])
-        size[changed] = np.maximum(size[changed], np.abs(own_factor) * of_pivot)
+        pivot_size = size[p] if strong[p] else np.maximum(np.abs(left[p]), WEAK_SIZE * size[p])
+        size[changed] = np.maximum(size[changed], np.abs(own_factor) * pivot_size)
         rows.append(p)
         columns.append(d)
         upper.append(left[p].copy())

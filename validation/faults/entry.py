@@ -156,7 +156,7 @@ def read(path: Path) -> Fault:
 
 
 def _rules(fault: Fault) -> list[tuple[bool, str]]:
-    """Rules, each with whether it is broken."""
+    """Whether each rule of an entry is broken, and the rule in words."""
     foreign = _imported(fault.script) - PACKAGES.get(fault.engine, set()) - {"numpy"} - set(sys.stdlib_module_names)
     return [
         (fault.engine not in PACKAGES, f"the engine is one of {', '.join(PACKAGES)}"),

@@ -49,8 +49,8 @@ def figure(problem: BenchmarkProblem, result: Result) -> Figure:
         for ours, mark in ((True, "o"), (False, "x")):
             beaten = [p for p in points if p not in best and (p.who == OURS) is ours]
             axes.plot(*_xy(beaten), mark, color=SOFT, alpha=0.3, markersize=4, markeredgewidth=1)
-        stairs = [(b.seconds, a.error) for a, b in pairwise(best)] + [(p.seconds, p.error) for p in best]
-        axes.plot(*zip(*sorted(stairs, key=lambda at: (at[0], -at[1])), strict=True), color=SOFT, linewidth=1)
+        corners = [(b.seconds, a.error) for a, b in pairwise(best)] + [(p.seconds, p.error) for p in best]
+        axes.plot(*zip(*sorted(corners, key=lambda at: (at[0], -at[1])), strict=True), color=SOFT, linewidth=1)
         for k, name in enumerate(fronted):
             axes.plot(*_xy([p for p in best if method(p) == name]), **_style(name, k, "points"), zorder=3)
         colors = {name: SERIES[_COLORS[k]] for k, name in enumerate(fronted)}

@@ -107,7 +107,7 @@ class Meshes:
             elif child.tag == "geom":
                 stated = self._classes.get(child.attributes.get("class", childclass), {}) | child.attributes
                 if not self._stays(child, stated, moves and not has_inertia):
-                    children += self._in_its_place(child, stated)
+                    children += self._placeholder(child, stated)
                     continue
             children.append(child)
         place.children = children
@@ -127,8 +127,8 @@ class Meshes:
         self._needed[mesh] = f"mesh '{mesh}', which a body has its inertia from"
         return True
 
-    def _in_its_place(self, geom: Element, stated: dict[str, str]) -> Iterator[Element]:
-        """What places the picture of a shape that is cut out, nothing where it has none."""
+    def _placeholder(self, geom: Element, stated: dict[str, str]) -> Iterator[Element]:
+        """A massless sphere where a mesh is cut out, by which its picture is placed; none if it is not drawn."""
         named = geom.attributes.get("mesh", "")  # By a class of defaults, it would be asked for again.
         is_seen = stated.get("group", "0") in map(str, SEEN_GROUPS) and stated.get("type") == "mesh"
         drawn = self._drawn(named) if is_seen and len(self.drawn) < MAX_VISUALS else None

@@ -142,18 +142,18 @@ class _Places(NamedTuple):
         return first + entries.index(index)
 
     def switch(self, of: SwitchRecord) -> SwitchRecord:
-        """A switch, in the part's numbers."""
+        """A switch, by the part's indices of rows, coordinates and parameters."""
         offsets = tuple((self.row + row, self.par(place)) for row, place in of.offsets)
         rotation, frames = tuple(map(self.par, of.rotation)), tuple(f"{self.block}.{frame}" for frame in of.frames)
         return of._replace(name=f"{self.block}.{of.name}", offsets=offsets, rotation=rotation, frames=frames)
 
     def sticking(self, of: StickingRecord) -> StickingRecord:
-        """A coordinate with friction that sticks, in the part's numbers."""
+        """A coordinate with friction that sticks, by the part's indices of rows, coordinates and parameters."""
         name, q, v = f"{self.block}.{of.name}", self.q + of.q, self.v + of.v
         return of._replace(name=name, q=q, v=v, mode=self.par(of.mode), row=self.row + of.row)
 
     def contact(self, of: RigidContactRecord) -> RigidContactRecord:
-        """A ball of a rigid contact, in the part's numbers."""
+        """A ball of a rigid contact, by the part's indices of rows, coordinates and parameters."""
         pushes, way = tuple(map(self.par, of.pushes)), tuple(map(self.par, of.way))
         rows, name = tuple(self.row + row for row in of.rows), f"{self.block}.{of.name}"
         apart, pole = self.par(of.apart), -1 if of.pole < 0 else self.par(of.pole)

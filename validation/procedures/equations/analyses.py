@@ -113,12 +113,12 @@ def identified(scene: Scene) -> Iterator[Cell]:
 
 def _inertial(mover: Mover) -> Array:
     """Mass, first moment, and Ixx, Ixy, Iyy, Ixz, Iyz, Izz about the origin of the body frame (10)."""
-    ten = np.zeros(10)
+    inertial = np.zeros(10)
     for part in mover.masses:
         c, m = part.p_BC, part.mass
         about = part.J_BC + m * (c @ c * np.eye(3) - np.outer(c, c))
-        ten += [m, *(m * c), about[0, 0], about[0, 1], about[1, 1], about[0, 2], about[1, 2], about[2, 2]]
-    return ten
+        inertial += [m, *(m * c), about[0, 0], about[0, 1], about[1, 1], about[0, 2], about[1, 2], about[2, 2]]
+    return inertial
 
 
 def _many(model: sf.Model, rng: np.random.Generator) -> tuple[Array, Array, Array]:

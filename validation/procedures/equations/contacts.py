@@ -110,10 +110,10 @@ def _distance(name: str, x: Array) -> tuple[float, Array]:
     if "size" in stated:
         beyond = np.abs(x) - np.array(stated["size"]) / 2
         outside = np.maximum(beyond, 0.0)
-        most = float(beyond.max())
-        if most > 0.0:
+        deepest = float(beyond.max())
+        if deepest > 0.0:
             return float(np.linalg.norm(outside)), np.sign(x) * outside / np.linalg.norm(outside)
-        return most, np.sign(x) * (beyond == most)
+        return deepest, np.sign(x) * (beyond == deepest)
     if name == "plane":
         return float(x[2]), np.array([0.0, 0.0, 1.0])
     half = np.inf if "cylinder" in name else stated.get("length", 0.0) / 2

@@ -134,8 +134,10 @@ def test_least_squares_of_no_negative_entry_are_those_of_scipy(seed: int) -> Non
 
 @pytest.mark.parametrize("q", [(0.0, 0.0, 0.0), (0.3, -0.7, 1.1)])
 @pytest.mark.parametrize("scale", [1e-6, 1.0, 1e6])
-def test_targets_curve_by_the_square_of_what_moves_them_most(q: tuple[float, ...], scale: float) -> None:
-    """Joints that do not move them add nothing; of none it is one."""
+def test_curvature_of_targets_is_the_largest_squared_column_of_their_jacobian(
+    q: tuple[float, ...], scale: float
+) -> None:
+    """Joints that do not move the targets add nothing; without any the curvature is one."""
     J = scale * arm().frame_jacobian("b2.end", np.array(q))[:3]
     for jacobian, largest in ((J, np.linalg.norm(J, axis=0).max() ** 2), (0.0 * J, 1.0)):
         task: Any = SimpleNamespace(jacobian=lambda _, rows=jacobian: np.vstack([rows, 1e9 * rows]), wishes=3)

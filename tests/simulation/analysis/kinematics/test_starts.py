@@ -41,7 +41,7 @@ def test_stated_start_values_are_kept() -> None:
 
 
 @pytest.mark.parametrize("name", GUESSES)
-def test_any_coordinate_and_any_speed_that_can_be_kept_are(name: str, rng: np.random.Generator) -> None:
+def test_stated_coordinates_and_speeds_are_kept_where_possible(name: str, rng: np.random.Generator) -> None:
     """One coordinate near a closed posture and the speed of another one, drawn."""
     m = model(name)
     closed = sf.assemble(m, GUESSES[name]).q
