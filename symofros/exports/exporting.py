@@ -12,6 +12,7 @@ from typing import Any, Literal, get_args
 import numpy as np
 
 from symofros.base.arguments import checked
+from symofros.base.arrays import Array
 from symofros.base.functions import FRAME_FUNCTIONS, exported
 from symofros.base.names import coordinate_of, package_name, speed_of
 from symofros.base.options import Options
@@ -45,6 +46,7 @@ from symofros.mechanics.topology import OTHER_FUNCTIONS
 from symofros.runtime.calls import LaneOptions
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start, singular_start, stated_names
+from symofros.simulation.analysis.reach import reach_of
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.stepping.methods import METHODS, method_meant
 
@@ -71,6 +73,8 @@ _DIAGRAMS: dict[str, Callable[[Diagram, Path, Sequence[str] | None, Stepping, st
 REACTIONS = ("joint_wrenches", "prescribed_efforts", "section_forces")
 # How programs and FMUs step where nobody says.
 _OF_RUNS = ("method", "rtol", "atol", "beam_limit")
+# Importers of units ask for intervals, not for steps: where none is stated, errors are bounded.
+_BY_INTERVALS, _BOUNDED = ("fmu2", "fmu3"), {"method": "dopri5"}
 _STEPPING: dict[str, Any] = {"dt": 1e-3} | {name: getattr(SimulationOptions(), name) for name in _OF_RUNS}
 _TARGETS_WITH_CHOSEN_FUNCTIONS = ("c", "wasm")
 # Targets whose steps, or those of whose hosts, end at instants of formulas of time.
@@ -124,7 +128,8 @@ def export(
         start: Names of coordinates, and d + names of speeds -> first values; the neutral state at rest by default.
             A model with constraints starts at the nearest state that meets them.
         method: Stepping method of Co-Simulation, as in `simulate`; not those of SUNDIALS. Of a diagram, this and what
-            follows are by default what it states for its runs; otherwise rk4.
+            follows are by default what it states for its runs; otherwise rk4, but for FMUs of a model without `dt`
+            dopri5, whose steps follow from the model.
         dt: Step of that method [s]; of an adaptive one the first. 1e-3 by default.
         rtol: Relative error of an adaptive method's step. 1e-6 by default.
         atol: Absolute bound of the local error of adaptive methods. 1e-9 by default.
@@ -174,7 +179,9 @@ def export(
     with _with_stepping():
         if target == "cuda" and not events:
             return write_cuda_package(system, name, frames, place)
-        material = _material(system, name, frames, functions, outputs, start or {}, _stepping(given), target, events)
+        material = _material(
+            system, name, frames, functions, outputs, start or {}, _stepping(given, target), target, events
+        )
     return _COMPILED[target](material, place)
 
 
@@ -209,9 +216,9 @@ def _export_diagram(
     return _DIAGRAMS[target](diagram, folder, outputs, stepping, GENERATOR)
 
 
-def _stepping(given: Mapping[str, Any]) -> Stepping:
-    """Stepping settings of an export: given ones, otherwise defaults."""
-    chosen = {**_STEPPING, **given}
+def _stepping(given: Mapping[str, Any], target: str = "") -> Stepping:
+    """Stepping settings of an export of a model to a target, or of a diagram: given ones, otherwise defaults."""
+    chosen = {**_STEPPING, **(_BOUNDED if target in _BY_INTERVALS and "dt" not in given else {}), **given}
     method = chosen["method"]
     known = [item.name for item in METHODS.values() if not item.family.multistep]
     if method not in known:
@@ -291,6 +298,7 @@ def _material(
         POINTS,
         tuple(first.q.tolist()),
         tuple(first.v.tolist()),
+        _reach(interpreted, first.q) if constrained else (1.0,) * len(record.q_names),
         stepping,
         interpreted.beams(),
         shown,
@@ -340,6 +348,18 @@ def _outputs(known: Sequence[str], generated: Sequence[str], wanted: Sequence[st
                 did_you_mean(frame, made or list(known)),
             )
     return tuple(wanted)
+
+
+def _reach(model: Model, q: Array) -> tuple[float, ...]:
+    """Change of each coordinate that is of order one (nq), components of quaternions by 1."""
+    of_speeds, reach = (
+        reach_of(model, model.constraint_jacobian(q), model.mass_matrix(q), None).speeds,
+        np.ones(model.nq),
+    )
+    for s in model.record.segments:
+        shifts = s.size if s.kind == "linear" else s.translations
+        reach[s.q : s.q + shifts] = of_speeds[s.v : s.v + shifts]
+    return tuple(reach.tolist())
 
 
 def _start(model: Model, given: Mapping[str, float]) -> ClosedStart:

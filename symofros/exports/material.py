@@ -60,6 +60,7 @@ class Material:
         points: Number of values of each.
         q_start: First configuration (nq).
         v_start: First speeds (nv).
+        reach: Change of each coordinate that is of order one (nq), where constraints may move the start.
         stepping: Stepping method and its settings.
         beams: Elastic beams, at the default parameters.
         outputs: Frames whose positions are outputs of blocks and FMUs.
@@ -79,6 +80,7 @@ class Material:
     points: int
     q_start: tuple[float, ...]
     v_start: tuple[float, ...]
+    reach: tuple[float, ...]
     stepping: Stepping
     beams: tuple[ElasticBeam, ...]
     outputs: tuple[str, ...]

@@ -14,7 +14,7 @@ from pathlib import Path
 from string import Template
 from uuid import UUID
 
-from symofros.base.c_text import c_string, comment, strings
+from symofros.base.c_text import c_string, comment, doubles, strings
 from symofros.diagrams.diagram import Diagram
 from symofros.errors import ExportError
 from symofros.exports.c.c_package import model_files
@@ -66,6 +66,7 @@ def _write(material: Material, folder: Path, version: int) -> Exported:
         f"#define SYM_FMU_PLANT {name}_plant",
         f"#define SYM_FMU_FRAMES {len(material.outputs)}",
         f"static const char *const sym_fmu_frames[] = {{{frames}}};",
+        f"static const double sym_fmu_reach[] = {{{doubles(material.reach)}}};",
         '#include "symofros_fmu.h"',
     ]
     sources[f"{name}_fmi{version}.c"] = _glue(name, material.record.name, material.generator, own, version, token)

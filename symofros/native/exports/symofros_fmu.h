@@ -2,13 +2,13 @@
  *
  * Value references run through, in this order: time, q, v, rates of q, rates of v, u, par, lam, kinetic and potential
  * energy, then x, y, z of each output frame. Included by the file that names the model: it defines SYM_FMU_PLANT,
- * SYM_FMU_TOKEN, SYM_FMU_FRAMES and sym_fmu_frames[]. What symofros_fmi.h calls is also in symofros_fmu_program.h.
+ * SYM_FMU_TOKEN, SYM_FMU_FRAMES, sym_fmu_frames[], sym_fmu_reach[]. What symofros_fmi.h calls is also in symofros_fmu_program.h.
  */
 #include "symofros_fmu_codes.h"
 
 typedef struct fmu_snapshot { /* followed by the numbers of fmu_parts */
     char hash[24];
-    double t, h, stop;
+    double t, h, stop, error, fastest;
     int32_t phase, has_stop, cosim, reserved;
 } fmu_snapshot;
 
@@ -24,13 +24,16 @@ typedef struct fmu {
     double *dq, *dv, *du, *dlam, *tangent;
     double *dpar, *par; /* direction, and parameters that are set aside (npar) */
     double *work, *frame_outputs;
+    sym_instance *twin; /* makes fixed steps of Co-Simulation once more, of another length; NULL: steps bound their errors */
+    double error, fastest; /* of speeds so far, at most, by that; largest speed: in the norm of the kinetic energy */
     const sym_function *pose[SYM_FMU_FRAMES + 1], *jacobian[SYM_FMU_FRAMES + 1];
     const sym_function *driven[SYM_FMU_FRAMES + 1]; /* by prescribed motions; NULL where there are none */
     const sym_function *kinetic, *potential;
     /* What the environment gave. */
     void *environment, *logger;
     char *name;
-    int bending_noted, sequence_noted; /* whether the log already says that a beam bends much, that balls struck in sequence */
+    int bending_noted, sequence_noted, steps_noted; /* whether the log already says that a beam bends much, that balls struck in
+                                                     * sequence, that steps are too long */
     char message[256]; /* a remark for the log, on a derivative that there is none of, or on a step that is refused */
     void (*release)(void *);
 } fmu;
@@ -63,10 +66,11 @@ static int fmu_find_variable(const fmu *f, size_t reference, size_t *index) {
 static size_t fmu_frame_outputs(const sym_model *m) { return 30 * (size_t)m->nv + 18 * (size_t)m->nu; }
 
 /* Lay out every array behind the struct: of the instance, of rates and of derivatives; and the name. */
-static void fmu_layout(fmu *f, sym_arena *arena, const sym_plant *plant, size_t name_length) {
+static void fmu_layout(fmu *f, sym_arena *arena, const sym_plant *plant, int cosim, size_t name_length) {
     const sym_model *m = plant->model();
     const size_t nq = (size_t)m->nq, nv = (size_t)m->nv, size = sym_instance_size(plant);
     void *memory = sym_allocate_bytes(arena, size);
+    void *more = cosim && !plant->adaptive ? sym_allocate_bytes(arena, size) : NULL;
     sym_instance draft; /* while the arena only counts */
     if (arena->base == NULL) {
         draft.model = m;
@@ -74,6 +78,7 @@ static void fmu_layout(fmu *f, sym_arena *arena, const sym_plant *plant, size_t 
     } else {
         f->instance = sym_instance_init(memory, size, plant);
         if (f->instance == NULL) return;
+        f->twin = more == NULL ? NULL : sym_instance_init(more, size, plant);
         f->work = sym_allocate(arena, sym_instance_differentiate_size(f->instance));
     }
     f->rates = sym_allocate(arena, nq + nv), f->rate_derivatives = sym_allocate(arena, nq + nv);
@@ -97,13 +102,13 @@ static fmu *fmu_new(int cosim, const char *name, void *(*allocate)(size_t, size_
     fmu draft, *f;
     int i;
     if (fmu_absent(cosim) == FMU_NOT_ALLOWED) return NULL;
-    fmu_layout(&draft, &arena, plant, length);
+    fmu_layout(&draft, &arena, plant, cosim, length);
     memory = allocate(sym_doubles(sizeof *f) + arena.used, sizeof *memory);
     if (memory == NULL) return NULL;
     f = (fmu *)(void *)memory;
     memset(f, 0, sizeof *f);
     arena.base = memory + sym_doubles(sizeof *f), arena.used = 0;
-    fmu_layout(f, &arena, plant, length);
+    fmu_layout(f, &arena, plant, cosim, length);
     if (f->instance == NULL) {
         release(memory);
         return NULL;
@@ -152,7 +157,8 @@ static void fmu_reset(fmu *f) {
         for (i = 0; i < 2 * nc; ++i) f->instance->gains[i] = FMU_GAIN;
     f->phase = FMU_INSTANTIATED, f->rates_valid = 0, f->has_stop = 0, f->parameters_valid = 1;
     f->instance->run.rtol = f->instance->plant->rtol;
-    f->bending_noted = f->sequence_noted = 0;
+    f->bending_noted = f->sequence_noted = f->steps_noted = 0;
+    f->error = f->fastest = 0.0;
 }
 
 /* What depends on parameters alone, for the present ones, if the description allows them. */
@@ -237,8 +243,8 @@ static int fmu_initialise(fmu *f) {
     return FMU_OK;
 }
 
-/* Change of a coordinate of the start, above which the log says that constraints moved it. Quaternions of 1e-3 from unit length
- * change by less. */
+/* Change of a coordinate of the start, of one of order one, above which the log says that constraints moved it. Quaternions of
+ * 1e-3 from unit length change by less. */
 #define FMU_START_MOVED 2e-3
 
 /* Write how far constraints moved the start. Returns whether that is worth telling. */
@@ -246,10 +252,12 @@ static int fmu_note_start(fmu *f) {
     const sym_instance *instance = f->instance;
     const int32_t nq = instance->model->nq;
     int32_t i, worst = 0;
-    if (nq == 0) return 0;
-    for (i = 1; i < nq; ++i)
-        if (fabs(instance->q[i] - f->first[i]) > fabs(instance->q[worst] - f->first[worst])) worst = i;
-    if (!(fabs(instance->q[worst] - f->first[worst]) > FMU_START_MOVED)) return 0;
+    double most = 0.0;
+    for (i = 0; i < nq; ++i) {
+        const double moved = fabs(instance->q[i] - f->first[i]) / sym_fmu_reach[i];
+        if (moved > most) most = moved, worst = i;
+    }
+    if (!(most > FMU_START_MOVED)) return 0;
     sprintf(f->message, "the start does not meet the constraints and was moved onto them: '%.60s' from %.9g to %.9g",
             instance->model->q_names[worst], f->first[worst], instance->q[worst]);
     return 1;
@@ -284,21 +292,120 @@ static int fmu_note_bending(fmu *f) {
     return !f->bending_noted++;
 }
 
+/* Sum of errors of speeds, relative to the largest, from which the log says so: later motion has amplified the first of them
+ * by as much as (18h) allows. */
+#define FMU_STEP_ERROR 0.015
+
+/* Write that steps are too long. Returns whether that is new and worth telling. */
+static int fmu_note_steps(fmu *f) {
+    if (!(f->error > FMU_STEP_ERROR * f->fastest) || f->steps_noted) return 0;
+    sprintf(f->message, "steps of at most %.3g s do not determine the motion: beside others, twice or half as long, errors of its"
+            " speeds add up to %.2g %% by t = %.6g s; export with a smaller dt, without dt, or with method='dopri5'",
+            f->instance->plant->h, 100.0 * f->error / f->fastest, f->instance->t);
+    return f->steps_noted = 1;
+}
+
 /* Write a remark on what has happened so far. Returns whether there is one that is new and worth telling. */
 static int fmu_remark(fmu *f) {
     const double t = sym_instance_struck_in_sequence(f->instance);
-    if (fmu_note_bending(f)) return 1;
+    if (fmu_note_bending(f) || fmu_note_steps(f)) return 1;
     if (t == -HUGE_VAL || f->sequence_noted) return 0;
     sprintf(f->message, "balls of rigid contacts struck one after the other at t = %.6g s, as no motion was found in which they do at once", t);
     return f->sequence_noted = 1;
 }
 
+/* Number of events, where some act. */
+static int32_t fmu_acting(const sym_instance *instance) { return instance->run.actions != NULL ? instance->system.n_events : 0; }
+
+enum { FMU_PARTS = 6 };
+typedef struct fmu_part { double *at; size_t size; } fmu_part;
+
+/* Numbers that a motion goes on from: the state, inputs, parameters, when each event has acted last, rigid contacts. */
+static void fmu_parts(const sym_instance *instance, fmu_part *parts) {
+    const sym_model *m = instance->model;
+    parts[0].at = instance->q, parts[0].size = (size_t)m->nq;
+    parts[1].at = instance->v, parts[1].size = (size_t)m->nv;
+    parts[2].at = instance->u, parts[2].size = (size_t)m->nu;
+    parts[3].at = instance->par, parts[3].size = (size_t)m->npar;
+    parts[4].at = instance->run.acted_at, parts[4].size = (size_t)fmu_acting(instance) + (instance->run.actions != NULL);
+    parts[5].at = instance->system.contact_memory, parts[5].size = sym_instance_contact_size(instance);
+}
+
+/* Which events that act once have done so, by when each has acted last. */
+static void fmu_recall_events(sym_instance *instance) {
+    const sym_event_plan *plan = instance->plant->events;
+    int32_t i;
+    for (i = 0; i < fmu_acting(instance); ++i) {
+        const int32_t spent = plan->once[i] && instance->run.acted_at[i] > -HUGE_VAL;
+        instance->event_terminal[i] = spent ? -1 : plan->cut[i];
+    }
+}
+
+/* The twin <- the motion as it is at the begin of a step. Returns 0 where there is no twin. */
+static int fmu_twin_begin(fmu *f) {
+    fmu_part from[FMU_PARTS], to[FMU_PARTS];
+    int i, prepared = 1;
+    if (f->twin == NULL || f->kinetic == NULL) return 0;
+    fmu_parts(f->instance, from), fmu_parts(f->twin, to);
+    for (i = 0; i < FMU_PARTS; ++i) {
+        if (from[i].size == 0) continue;
+        if (i == 3) prepared = memcmp(to[i].at, from[i].at, from[i].size * sizeof(double)) == 0;
+        memcpy(to[i].at, from[i].at, from[i].size * sizeof(double));
+    }
+    f->twin->t = f->instance->t;
+    fmu_recall_events(f->twin);
+    return prepared || sym_instance_prepare(f->twin) == 0;
+}
+
+/* Kinetic energy at the motion's configuration and so many times dv, by way of the twin. */
+static double fmu_kinetic(fmu *f, double times, const double *dv) {
+    sym_instance *twin = f->twin;
+    double energy = 0.0, *out[1];
+    int32_t i;
+    out[0] = &energy;
+    memcpy(twin->q, f->instance->q, (size_t)twin->model->nq * sizeof *twin->q);
+    for (i = 0; i < twin->model->nv; ++i) twin->v[i] = times * dv[i];
+    return sym_instance_call(twin, f->kinetic, out) ? energy : 0.0;
+}
+
+/* The root of dv^T M dv: what prescribed motions add to the kinetic energy is no part of it. */
+static double fmu_norm(fmu *f, const double *dv) {
+    const double square = fmu_kinetic(f, 1.0, dv) + fmu_kinetic(f, -1.0, dv) - 2.0 * fmu_kinetic(f, 0.0, dv);
+    return sqrt(square > 0.0 ? square : 0.0);
+}
+
+/* Share of coordinates that rounding may change in a step: slower motion than that says nothing of steps. */
+#define FMU_ROUNDING 1e-10
+
+/* Make the communication step to t, which takes n steps, once more by the twin, in steps twice as long, or half as long where
+ * n = 1. As forces that bend leave no method more than order one, the speeds at its end err by the difference, or by twice that.
+ * What another number of events has made of them is no measure of it. */
+static void fmu_twin_step(fmu *f, double t, double span, double n) {
+    sym_instance *instance = f->instance, *twin = f->twin;
+    const int32_t nq = instance->model->nq, nv = instance->model->nv;
+    const double h = n > 1.0 ? 2.0 * span / n : 0.5 * span;
+    double speed, largest = 0.0;
+    int32_t i;
+    if (sym_instance_advance(twin, t, h) != SYM_FINISHED) return;
+    for (i = 0; i < nv; ++i) f->dv[i] = twin->v[i] - instance->v[i];
+    for (i = 0; i < nq; ++i) largest = fabs(instance->q[i]) > largest ? fabs(instance->q[i]) : largest;
+    if (twin->run.n_event_records == instance->run.n_event_records) f->error += (n > 1.0 ? 1.0 : 2.0) * fmu_norm(f, f->dv);
+    speed = fmu_norm(f, instance->v);
+    for (i = 0; i < nv; ++i) f->dv[i] = FMU_ROUNDING * largest / h;
+    largest = fmu_norm(f, f->dv);
+    speed = speed > largest ? speed : largest;
+    f->fastest = speed > f->fastest ? speed : f->fastest;
+}
+
 /* One communication step, to time t. */
 static int fmu_step(fmu *f, double t) {
+    const double span = t - f->instance->t, n = ceil(span / f->instance->plant->h * (1.0 - 1e-9));
+    const int again = fmu_twin_begin(f);
     int32_t status;
     const char *reason;
     f->rates_valid = 0;
     status = sym_instance_advance(f->instance, t, 0.0);
+    if (status == SYM_FINISHED && again) fmu_twin_step(f, t, span, n);
     if (status == SYM_FINISHED) return FMU_OK;
     if (status == SYM_BEYOND_THEORY) return fmu_note_bending(f), FMU_BEYOND_THEORY;
     if (status == SYM_NO_ROTATION) return FMU_INPUT_NO_ROTATION;
@@ -410,29 +517,11 @@ static int fmu_differentiate(fmu *f, size_t n_unknown, const uint32_t *unknown, 
     return fmu_add_by_parameters(f, n_unknown, unknown, derivative);
 }
 
-/* Number of events, where some act. */
-static int32_t fmu_acting(const fmu *f) { return f->instance->run.actions != NULL ? f->instance->system.n_events : 0; }
-
-enum { FMU_PARTS = 6 };
-typedef struct fmu_part { double *at; size_t size; } fmu_part;
-
-/* Numbers that a motion goes on from: the state, inputs, parameters, when each event has acted last, rigid contacts. */
-static void fmu_parts(const fmu *f, fmu_part *parts) {
-    const sym_instance *instance = f->instance;
-    const sym_model *m = instance->model;
-    parts[0].at = instance->q, parts[0].size = (size_t)m->nq;
-    parts[1].at = instance->v, parts[1].size = (size_t)m->nv;
-    parts[2].at = instance->u, parts[2].size = (size_t)m->nu;
-    parts[3].at = instance->par, parts[3].size = (size_t)m->npar;
-    parts[4].at = instance->run.acted_at, parts[4].size = (size_t)fmu_acting(f) + (instance->run.actions != NULL);
-    parts[5].at = instance->system.contact_memory, parts[5].size = sym_instance_contact_size(instance);
-}
-
 static size_t fmu_snapshot_size(const fmu *f) {
     fmu_part parts[FMU_PARTS];
     size_t sizes = 0;
     int i;
-    fmu_parts(f, parts);
+    fmu_parts(f->instance, parts);
     for (i = 0; i < FMU_PARTS; ++i) sizes += parts[i].size;
     return sizeof(fmu_snapshot) + sizes * sizeof(double);
 }
@@ -446,9 +535,10 @@ static void fmu_save(const fmu *f, void *into) {
     memset(&head, 0, sizeof head);
     strncpy(head.hash, instance->model->hash, sizeof head.hash - 1);
     head.t = instance->t, head.h = instance->run.h, head.stop = f->stop;
+    head.error = f->error, head.fastest = f->fastest;
     head.phase = (int32_t)f->phase, head.has_stop = f->has_stop, head.cosim = f->cosim;
     memcpy(into, &head, sizeof head);
-    fmu_parts(f, parts);
+    fmu_parts(f->instance, parts);
     for (i = 0; i < FMU_PARTS; ++i) {
         if (parts[i].size == 0) continue;
         memcpy(at, parts[i].at, parts[i].size * sizeof(double));
@@ -474,18 +564,15 @@ static int fmu_load(fmu *f, const void *from) {
     if (!fmu_owns(f, from) || head.cosim != f->cosim) return 0;
     if (head.phase < 0 || head.phase > (int32_t)FMU_TERMINATED) return 0;
     instance->t = head.t, instance->run.h = head.h, f->stop = head.stop;
+    f->error = head.error, f->fastest = head.fastest;
     f->phase = (fmu_phase)head.phase, f->has_stop = head.has_stop;
-    fmu_parts(f, parts);
+    fmu_parts(f->instance, parts);
     for (i = 0; i < FMU_PARTS; ++i) {
         if (parts[i].size == 0) continue;
         memcpy(parts[i].at, at, parts[i].size * sizeof(double));
         at += parts[i].size * sizeof(double);
     }
-    for (i = 0; i < fmu_acting(f); ++i) {
-        const sym_event_plan *plan = instance->plant->events;
-        const int32_t spent = plan->once[i] && instance->run.acted_at[i] > -HUGE_VAL;
-        instance->event_terminal[i] = spent ? -1 : plan->cut[i];
-    }
+    fmu_recall_events(instance);
     f->parameters_valid = 0, f->rates_valid = 0;
     return 1;
 }

@@ -47,7 +47,7 @@ def test_units_act_as_their_description_states(tmp_path: Path) -> None:
     """A part slips from a hand, and a rope catches it."""
     system = MODELS["docking"]
     first = dict(zip(sf.compile(system).names.q, sf.assemble(sf.compile(system)).q.tolist(), strict=True))
-    unit = str(exported(system, 3, tmp_path, start=first))
+    unit = str(exported(system, 3, tmp_path, start=first, dt=1e-3))
     said = fmpy.read_model_description(unit)
     names = [variable.name for variable in said.modelVariables if variable.name.startswith("q.")]
     assert said.modelExchange is None and len(names) == len(first)

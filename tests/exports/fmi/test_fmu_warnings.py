@@ -4,12 +4,16 @@ from __future__ import annotations
 
 import math
 import re
+from pathlib import Path
+from tempfile import TemporaryDirectory
 from typing import Any
 
 import fmpy
+import numpy as np
 import pytest
 
-from tests.exports.fmi.units import ONE_VERSION, VERSIONS, simulated
+import symofros as sf
+from tests.exports.fmi.units import ONE_VERSION, VERSIONS, exported, simulated
 from tests.simulation.beam_models import at_rest
 
 
@@ -67,6 +71,48 @@ def test_a_start_that_constraints_move_is_logged(made: Any, version: int, given:
     assert len(run) == 3
     moved = [line for line in log if "does not meet the constraints and was moved onto them: 'q" in line]
     assert len(moved) == (given is not None)
+
+
+def test_a_start_is_moved_by_a_share_of_its_mechanism(tmp_path: Path) -> None:
+    """A crank of 2 mm, its slider half a millimetre off: less than what was said, of any mechanism."""
+    inertia, pin = sf.Inertia(1e-3, moments=(1e-9, 1e-9, 1e-9)), (sf.Frame("pin", (2e-3, 0, 0)),)
+    crank = sf.RigidBody("crank", sf.Joint("turn", "revolute", axis=(0, 0, 1)), inertia, frames=pin)
+    slider = sf.RigidBody("slider", sf.Joint("slide", "prismatic", axis=(1, 0, 0)), inertia)
+    yoke = sf.Closure("yoke", ("slider", None), ("crank", "pin"), ("x",))
+    small = sf.System("small", (crank, slider), constraints=(yoke,))
+    path = str(exported(small, 3, tmp_path / "fmu", start={"turn": 1.0, "slide": 2e-3 * math.cos(1.0)}))
+    for off in (1e-6, 5e-4):
+        start = {"q.slide": 2e-3 * math.cos(1.0) + off}
+        _, log = simulated(path, stop_time=0.01, output_interval=0.005, start_values=start)
+        assert any("was moved onto them" in line for line in log) == (off > 1e-5)
+
+
+def bounced(**options: Any) -> tuple[float, list[str]]:
+    """Error of the heights of a ball on a stop of 1e5 N/m in Co-Simulation, relative to their range, and the log."""
+    stop = sf.Stop(1e5, lower=0.0)
+    ball = sf.RigidBody(
+        "ball", sf.Joint("z", "prismatic", axis=(0, 0, 1), elements=(stop,)), sf.Inertia(1.0, moments=(1, 1, 1))
+    )
+    system = sf.System("bouncing", (ball,), gravity=(0, 0, -9.81))
+    with TemporaryDirectory() as folder:
+        path = str(exported(system, 3, Path(folder) / "fmu", start={"z": 0.1}, **options))
+        run, log = simulated(path, fmi_type="CoSimulation", stop_time=1.0, output_interval=0.01)
+    exact = sf.simulate(sf.compile(system), [0.1], t_end=1.0, output=0.01, method="dop853", rtol=1e-11, atol=1e-13)
+    return float(np.abs(run["q.z"] - exact.q[:, 0]).max() / np.ptp(exact.q)), log
+
+
+def test_steps_without_a_stated_length_follow_from_the_model() -> None:
+    """By default steps of 1 ms met the stop: 2.2 % off, in silence."""
+    error, log = bounced()
+    assert error < 2e-3 and not log
+
+
+@pytest.mark.parametrize("dt", [1e-3, 1e-4])
+def test_steps_that_are_too_long_are_logged(dt: float) -> None:
+    """They were made in silence; steps of a tenth are not too long."""
+    error, log = bounced(dt=dt)
+    said = [line for line in log if f"steps of at most {dt:.3g} s do not determine the motion" in line]
+    assert (error > 0.02) == (len(said) == 1) == (dt == 1e-3) and len(log) == len(said)
 
 
 def test_a_variable_that_is_not_set_is_named(made: Any) -> None:
