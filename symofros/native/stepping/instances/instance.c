@@ -98,7 +98,7 @@ static int32_t sym_instance_allocate(sym_instance *instance, sym_arena *arena) {
     s->n_segments = p->n_segments, s->segments = p->segments, s->on_speeds = p->on_speeds, s->group = p->group;
     s->n_quaternion_inputs = p->n_quaternion_inputs, s->quaternion_inputs = p->quaternion_inputs;
     sym_run_set_defaults(r);
-    r->system = s, r->method = p->method, r->adaptive = p->adaptive, r->tableau = *p->tableau;
+    r->system = s, r->method = p->method, r->adaptive = p->adaptive && nv > 0, r->tableau = *p->tableau;
     r->rtol = p->rtol, r->atol = p->atol;
     instance->par = sym_allocate(arena, (size_t)m->npar), instance->pre = sym_allocate(arena, (size_t)m->npre);
     instance->work = sym_allocate(arena, sym_work(m));
