@@ -2,7 +2,9 @@
 
 from __future__ import annotations
 
-from collections.abc import Callable, Iterator
+from collections import Counter
+from collections.abc import Callable, Iterable, Iterator
+from dataclasses import replace
 from functools import cache, lru_cache, partial
 from typing import Any
 
@@ -14,8 +16,10 @@ from symofros.description.values import Value
 from symofros.expr.edges import Edge
 from symofros.expr.expression import evaluate
 from symofros.expr.graph import Graph
+from symofros.mechanics.beams.fields import Form
 from symofros.mechanics.beams.theories import theory_of
 from symofros.mechanics.topology.tree import SpanningTree
+from symofros.runtime.beam_orders import OmittedStiffness
 from symofros.runtime.beams import ElasticBeam, ExactElasticBeam
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
@@ -89,16 +93,27 @@ def beams_at(tree: SpanningTree) -> Callable[[Array], tuple[ElasticBeam, ...]]:
     """A function that gives a tree's elastic beams from its run-time parameters (npar)."""
     names, constants = tree.coordinates.par, tree.coordinates.constants
     tips = [(link.tip_of, link.q[0], link.v[0]) for link in tree.links if link.tip_of is not None and link.tip_of.modes]
+    clamped = _beams_in_series(beam for beam, _, _ in tips)
 
     @lru_cache(maxsize=_KEPT)
     def numbers_at(par: tuple[float, ...]) -> tuple[ElasticBeam, ...]:
         values = constants | dict(zip(names, par, strict=True))
-        return tuple(_numbers(beam, q, v, values) for beam, q, v in tips)
+        return tuple(_numbers(beam, q, v, values, clamped[beam.name]) for beam, q, v in tips)
 
     return lambda par: numbers_at(tuple(par.tolist()))
 
 
-def _numbers(beam: Beam, q: int, v: int, values: dict[str, float]) -> ElasticBeam:
+def _beams_in_series(beams: Iterable[Beam]) -> dict[str, int]:
+    """How many beams are clamped to one another, by the name of each."""
+    roots: dict[str, str] = {}
+    for beam in beams:  # Parents first.
+        clamped = beam.joint.kind == "fixed" and beam.joint.parent in roots
+        roots[beam.name] = roots[beam.joint.parent] if clamped else beam.name
+    counts = Counter(roots.values())
+    return {name: counts[root] for name, root in roots.items()}
+
+
+def _numbers(beam: Beam, q: int, v: int, values: dict[str, float], in_series: int) -> ElasticBeam:
     judged = theory_of(beam).judged
     known: dict[str, Any] = {
         "name": beam.name,
@@ -111,6 +126,7 @@ def _numbers(beam: Beam, q: int, v: int, values: dict[str, float]) -> ElasticBea
         "elastic_stiffness": cache(partial(_stiffness, beam, values)),
         "EI_z": evaluate(judged.EI_z, values),
         "EI_y": evaluate(judged.EI_y, values),
+        "omitted": _omitted(beam, values, in_series),
     }
     angles = np.array(judged.angles)
     if judged.integration_error is None:
@@ -124,13 +140,41 @@ def _numbers(beam: Beam, q: int, v: int, values: dict[str, float]) -> ElasticBea
     )
 
 
-def _stiffness(beam: Beam, values: dict[str, float]) -> Array:
-    """Elastic stiffness (n, n)."""
+def _omitted(beam: Beam, values: dict[str, float], in_series: int) -> OmittedStiffness | None:
+    """What the order of a beam's equations leaves out of its stiffness under loads (beams.md, 6)."""
+    axial = not beam.foreshortening or beam.retain == "zeroth_order"
+    turns = bool(beam.twist and (beam.bend_y or beam.bend_z))
+    rigid = "" if not turns or (beam.bend_y and beam.bend_z) else "z" if beam.bend_y else "y"
+    couples = turns and not rigid and beam.retain != "all"
+    if beam.elastic.is_exact or not (axial or couples or rigid):
+        return None
+    # What the tip carries turns with it but in the lowest order, where beams in series lack this together.
+    count = in_series if beam.retain == "zeroth_order" else 1
+    order = (
+        f"retain: {beam.retain}" if beam.foreshortening or beam.retain == "zeroth_order" else "foreshortening: false"
+    )
+    coupling = cache(partial(_coupling, replace(beam, retain="all"), values)) if couples else None
+    return OmittedStiffness(order, axial, rigid, coupling, count)
+
+
+def _strain_energy(beam: Beam, values: dict[str, float]) -> tuple[Graph, Form]:
     g = Graph()
 
     def lower(value: Value) -> Edge:
         return g.constant(evaluate(value, values))
 
     coordinates = tuple(g.input("q", i) for i in range(beam.modes))
-    energy = theory_of(beam).equations(g, lower, coordinates).strain_energy
+    return g, theory_of(beam).equations(g, lower, coordinates).strain_energy
+
+
+def _stiffness(beam: Beam, values: dict[str, float]) -> Array:
+    """Elastic stiffness (n, n)."""
+    g, energy = _strain_energy(beam, values)
     return np.array([[g.number(edge) for edge in row] for row in energy.second_derivatives()], dtype=np.float64)
+
+
+def _coupling(beam: Beam, values: dict[str, float]) -> Array:
+    """Third derivatives of the strain energy (n, n, n)."""
+    g, energy = _strain_energy(beam, values)
+    rows = [[[g.number(edge) for edge in row] for row in part.second_derivatives()] for part in energy.gradient]
+    return np.array(rows, dtype=np.float64)

@@ -10,6 +10,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.native import native_number
+from symofros.runtime.beam_orders import BentBeam, LeftOut, OmittedStiffness, left_out, left_out_notes
 from symofros.runtime.calls.kernel import Array
 
 # Judges each step of a run, and has the numbers of (24).
@@ -59,6 +60,7 @@ class BeamBending:
         t: Instant [s]; NaN where the result has none.
         sections: Number of sections of a geometrically exact rod, whose error is that of its shape's integration over
             the length; zero of a beam of second order.
+        left_out: Stiffness under loads that the order of its equations leaves out.
     """
 
     beam: str
@@ -69,6 +71,7 @@ class BeamBending:
     error: float
     t: float = math.nan
     sections: int = 0
+    left_out: tuple[LeftOut, ...] = ()
 
     def __str__(self) -> str:
         """One sentence."""
@@ -122,6 +125,7 @@ class ElasticBeam:
         elastic_stiffness: Forms the elastic stiffness (n, n).
         EI_z: Stiffness against bending in the x-y plane at mid-length [N m^2].
         EI_y: Stiffness against bending in the x-z plane at mid-length [N m^2].
+        omitted: What its equations leave out of the stiffness under loads; None of a beam that leaves out nothing.
     """
 
     name: str
@@ -135,6 +139,7 @@ class ElasticBeam:
     elastic_stiffness: Callable[[], Array]
     EI_z: float
     EI_y: float
+    omitted: OmittedStiffness | None
 
     # Error up to which a run does not look for the step that bends a beam most: of what is stated, the last digit.
     NEGLIGIBLE = 1e-4
@@ -226,6 +231,21 @@ class ElasticBeam:
             contrast = abs(self.EI_z - self.EI_y) * abs(pitch - yaw) / stiffness
             error += contrast * twist * slope / (slope + twist)
         return error
+
+    def left_out(self, elastic: Array, stations: Array, forces: Array) -> tuple[LeftOut, ...]:
+        """What is worth a note of the stiffness that the order leaves out.
+
+        Args:
+            elastic: Elastic coordinates (n).
+            stations: Stations x/L of the section forces (s); none where they are not known.
+            forces: Section forces (s, 6).
+        """
+        if self.omitted is None:
+            return ()
+        angles = self.angles * self.scale
+        beam = BentBeam(self.length, self.xi, angles, self.counts, self.elastic_stiffness())
+        parts = left_out(self.omitted, beam, elastic, stations, forces)
+        return tuple(part for part in parts if abs(part.change) > NOTED_ERROR)
 
     def difference_step(self, elastic: Array) -> Array:
         """Share of elastic coordinates (..., n) that turns sections by the angle of differences (...)."""
@@ -329,5 +349,7 @@ def largest_bending(bendings: Sequence[BeamBending]) -> BeamBending | None:
 
 
 def bending_notes(bendings: Sequence[BeamBending]) -> tuple[str, ...]:
-    """Sentences on the beams whose error is worth a note."""
-    return tuple(f"{bending}; {bending.remedy}" for bending in bendings if bending.error > NOTED_ERROR)
+    """Sentences on the beams whose error, or what their order leaves out, is worth a note."""
+    bent = (f"{bending}; {bending.remedy}" for bending in bendings if bending.error > NOTED_ERROR)
+    left_out = (note for bending in bendings for note in left_out_notes(bending.beam, bending.left_out))
+    return (*bent, *left_out)

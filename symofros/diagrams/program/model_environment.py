@@ -155,6 +155,10 @@ class Models:
         """A model of a mechanism that has its mass matrix and forces; interpreted, as `contacts`."""
         return self._chosen(name, Options(backend="interpreter"), "dynamics")
 
+    def sections(self, name: str) -> Model:
+        """A model of a mechanism that has the forces in its beams; interpreted, as `contacts`."""
+        return self._chosen(name, Options(backend="interpreter"), "section_forces")
+
     def contacts(self, name: str) -> Model:
         """A model of a mechanism that has the forces of its contacts; interpreted, because a run asks for them once."""
         return self._chosen(name, Options(backend="interpreter"), "contact_forces")

@@ -4,6 +4,7 @@ from __future__ import annotations
 
 import math
 from collections.abc import Callable, Sequence
+from dataclasses import replace
 from typing import NamedTuple
 
 import numpy as np
@@ -47,7 +48,7 @@ def bendings_in_motion(
         t: Time.
         slopes: Derivative of the accelerations by q there (nv, nv), where known; of models without constraints.
     """
-    bent = bendings_at(model, q, par)
+    bent = with_left_out(model, bendings_at(model, q, par), (np.array([t]), q[None], v[None], u[None]), par)
     if max((bending.error for bending in bent), default=0.0) < UNAMPLIFIED:
         return bent
     if slopes is None:
@@ -55,7 +56,8 @@ def bendings_in_motion(
     else:
         factors = _linearised_amplifications(model, q, v, u, slopes, par, t)
     return tuple(
-        beam.bending(q[beam.in_q], amplification=factor) for beam, factor in zip(model.beams(par), factors, strict=True)
+        replace(beam.bending(q[beam.in_q], amplification=factor), left_out=bending.left_out)
+        for beam, factor, bending in zip(model.beams(par), factors, bent, strict=True)
     )
 
 
@@ -100,7 +102,66 @@ def bendings_under_efforts(model: Model, motion: Motion, t: Array) -> tuple[Beam
             factors = (amplification_of(np.array([w]), np.array([k])) for w, k in zip(works, loaded, strict=True))
             bent = [bending.amplified(factor) for bending, factor in zip(bent, factors, strict=True)]
         worst.append(max(bent, key=lambda bending: bending.error))
-    return tuple(worst)
+    return with_left_out(model, tuple(worst), (t, q, v, u), par[0], (a, lam)) if len(t) else tuple(worst)
+
+
+def with_left_out(
+    model: Model,
+    bendings: tuple[BeamBending, ...],
+    states: Sequence[Array],
+    par: ArrayLike | None,
+    response: tuple[Array, Array] | None = None,
+) -> tuple[BeamBending, ...]:
+    """Bending of each beam, with the stiffness that its order leaves out in a motion, in the mean over its states.
+
+    Args:
+        model: Model.
+        bendings: Bending of each beam.
+        states: States of the motion, as of `amplifications`.
+        par: Run-time parameters.
+        response: Accelerations (n, nv) and multipliers (n, nc), if they are not those of free motion.
+    """
+    beams = model.beams(par)
+    rows = amplifying(*states[1:3])
+    if not len(rows) or all(beam.omitted is None for beam in beams):
+        return bendings
+    t, q, v, u = (array[rows] for array in states)
+    if any(beam.omitted is not None and beam.omitted.of_forces for beam in beams):
+        try:
+            if response is None:
+                a, lam = model.forward_dynamics(q, v, u, par=par, t=t, multipliers=True)
+            else:
+                a, lam = (array[rows] for array in response)
+            loaded = [section_forces_of(model, beam.name, (q, v, a, u), lam, t, par) for beam in beams]
+        except SymofrosError:  # Options.functions left out what this takes.
+            loaded = [_UNKNOWN] * len(beams)
+    else:
+        loaded = [_UNKNOWN] * len(beams)
+    return tuple(
+        replace(bending, left_out=beam.left_out(q[:, beam.in_q].mean(axis=0), *known))
+        for beam, bending, known in zip(beams, bendings, loaded, strict=True)
+    )
+
+
+# Stations and section forces that are not known.
+_UNKNOWN = np.zeros(0), np.zeros((0, 6))
+
+
+def section_forces_of(
+    model: Model,
+    beam: str,
+    states: tuple[Array, Array, Array, Array],
+    lam: Array | None,
+    t: Array,
+    par: ArrayLike | None,
+) -> tuple[Array, Array]:
+    """Stations x/L of a beam (s), and the mean of its section forces over states q, v, v', u of a motion (s, 6)."""
+    sections = model.names.sections
+    at = [k for k, (name, _) in enumerate(sections) if name == beam]
+    if not at:
+        return _UNKNOWN
+    forces = model.section_forces(*states, lam if model.nc else None, par=par, t=t)[:, at].mean(axis=0)
+    return np.array([sections[k][1] for k in at]), forces
 
 
 def _linearised_amplifications(
@@ -166,7 +227,7 @@ def amplified_in_motion(
     par: ArrayLike | None,
     inertia: str = "dynamics",
 ) -> tuple[BeamBending, ...]:
-    """Bending of each beam, its error amplified by the axial loads of a motion; unchanged below UNAMPLIFIED.
+    """Bending of each beam with what its order leaves out, its error amplified by axial loads from UNAMPLIFIED on.
 
     Args:
         bendings: Bending of each beam, axial loads apart.
@@ -176,9 +237,9 @@ def amplified_in_motion(
         par: Run-time parameters.
         inertia: Function whose first output is the mass matrix.
     """
-    if max((bending.error for bending in bendings), default=0.0) < UNAMPLIFIED or not len(states[0]):
-        return bendings
-    return amplify(amplifications(model, states, par, inertia))
+    if max((bending.error for bending in bendings), default=0.0) >= UNAMPLIFIED and len(states[0]):
+        bendings = amplify(amplifications(model, states, par, inertia))
+    return with_left_out(model, bendings, states, par)
 
 
 def amplifying(q: Array, v: Array) -> npt.NDArray[np.intp]:

@@ -20,6 +20,7 @@ from symofros.simulation.analysis.beam_theory import (
     bendings_in_motion,
     beyond_critical_load,
     refuse_beyond,
+    with_left_out,
 )
 from symofros.simulation.analysis.force_states import rest_with_states
 from symofros.simulation.analysis.friction import friction_curve
@@ -211,13 +212,21 @@ def _bendings(balance: Balance, end: Search) -> tuple[tuple[BeamBending, ...], t
     if not beams or not np.all(np.isfinite(q)):
         return (), ()
     if np.any(end.v[: balance.n]):  # Motion stiffens and softens; stability is then no matter of stiffness alone.
-        return bendings_in_motion(balance.model, q, end.v, balance.u, balance.par, balance.t), ()
+        moving = bendings_in_motion(balance.model, q, end.v, balance.u, balance.par, balance.t)
+        return _with_left_out(balance, end, moving), ()
     K = balance.stiffness(q, end.v, end.lam)
     notes = tuple(
         f"beam '{name}' is loaded past its critical load: this rest is unstable"
         for name in beyond_critical_load(beams, q, K)
     )
-    return bendings_at_rest(balance.model, q, K, balance.par), notes
+    return _with_left_out(balance, end, bendings_at_rest(balance.model, q, K, balance.par)), notes
+
+
+def _with_left_out(balance: Balance, end: Search, bendings: tuple[BeamBending, ...]) -> tuple[BeamBending, ...]:
+    """With what orders leave out while nothing accelerates: held coordinates stay, too."""
+    states = np.array([balance.t]), end.q[None], end.v[None], np.asarray(balance.u)[None]
+    response = np.zeros((1, balance.model.nv)), end.lam[None]
+    return with_left_out(balance.model, bendings, states, balance.par, response)
 
 
 def _unstable_notes(balance: Balance, end: Search) -> tuple[str, ...]:

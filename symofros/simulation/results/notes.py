@@ -180,6 +180,11 @@ NOTES: Mapping[str, NoteKind] = {
         "a rod bends so far between its sections that its place is off by more than a per cent",
         "more sections",
     ),
+    "beam order": NoteKind(
+        "beam '…' leaves out …, with which …",
+        "loads give or take stiffness that the order of a beam's equations leaves out (`retain`, `foreshortening`)",
+        "`retain: all`, or `first_order` where axial forces are left out",
+    ),
     "no equilibrium": NoteKind(
         "the state is neither an equilibrium nor a steady motion: '…' accelerates by …",
         "modes are asked for at a state that moves on, to where the linearised equations are others",

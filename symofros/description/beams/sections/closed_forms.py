@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from typing import Any
 
-from symofros.description.beams.sections.material import Material
+from symofros.description.beams.sections.material import Material, refuse_sizes
 from symofros.description.beams.sections.section import Section
 from symofros.description.beams.sections.shear import (
     ODD_FIFTHS,
@@ -30,7 +30,7 @@ def rectangle(material: Material, y: Any, z: Any) -> Section:
         y: Size along y [m]; a number or a formula.
         z: Size along z [m]; a number or a formula.
     """
-    E, G, rho, a, b = _terms(material, y, z)
+    E, G, rho, a, b = _terms(material, y=y, z=z)
     area = a * b
     I_y, I_z = a * b * b * b / Term(12.0), b * a * a * a / Term(12.0)
     shear = tuple(G * area / _rectangle_compliance(E / G, *sizes) for sizes in ((a, b), (b, a)))
@@ -48,7 +48,7 @@ def circle(material: Material, radius: Any) -> Section:
         material: Material.
         radius: Radius [m]; a number or a formula.
     """
-    E, G, rho, r = _terms(material, radius)
+    E, G, rho, r = _terms(material, radius=radius)
     area = Term(_PI) * r * r
     moment = area * r * r / Term(4.0)
     shear = G * area / _round_compliance(E / G, Term(0.0))
@@ -65,7 +65,7 @@ def tube(material: Material, radius: Any, thickness: Any) -> Section:
         radius: Outer radius [m]; a number or a formula.
         thickness: Thickness of the wall [m]; a number or a formula.
     """
-    E, G, rho, outer, wall = _terms(material, radius, thickness)
+    E, G, rho, outer, wall = _terms(material, radius=radius, thickness=thickness)
     inner = outer - wall
     squares = outer * outer + inner * inner
     area = Term(_PI) * wall * (outer + inner)
@@ -83,7 +83,7 @@ def ellipse(material: Material, y: Any, z: Any) -> Section:
         y: Semi-axis along y [m]; a number or a formula.
         z: Semi-axis along z [m]; a number or a formula.
     """
-    E, G, rho, a, b = _terms(material, y, z)
+    E, G, rho, a, b = _terms(material, y=y, z=z)
     area = Term(_PI) * a * b
     torsion = area * a * a * b * b / (a * a + b * b)
     I_y, I_z = area * b * b / Term(4.0), area * a * a / Term(4.0)
@@ -91,9 +91,13 @@ def ellipse(material: Material, y: Any, z: Any) -> Section:
     return _homogeneous(E, G, rho, area, I_y, I_z, G * torsion, shear, ("ellipse", a, b), radii=_radii(a, b))
 
 
-def _terms(material: Material, *sizes: Any) -> list[Term]:
-    stated = [as_value(size, "section: size") for size in sizes]
-    return [Term(value) for value in (material.E, material.G, material.rho, *stated)]
+def _terms(material: Material, **sizes: Any) -> list[Term]:
+    stated = {name: as_value(size, f"section: {name}") for name, size in sizes.items()}
+    radius = stated.get("radius")
+    refuse_sizes(
+        "section", stated, ("thickness", radius) if "thickness" in sizes and isinstance(radius, float) else None
+    )
+    return [Term(value) for value in (material.E, material.G, material.rho, *stated.values())]
 
 
 def _homogeneous(

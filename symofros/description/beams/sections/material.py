@@ -1,11 +1,17 @@
-"""Material: what an isotropic elastic material brings to a section."""
+"""Material: what an isotropic elastic material brings to a section; what sizes a section may have."""
 
 from __future__ import annotations
 
+from collections.abc import Mapping
 from dataclasses import dataclass, fields
 
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import Value, as_value
+from symofros.errors import DescriptionError, Problem
+from symofros.expr.expression import Expression
+
+# E/G where Poisson's ratio is 1/2; beyond by rounding counts as there.
+_LARGEST_RATIO = 3.0 * (1.0 + 1e-9)
 
 
 @refuses_unknown_entries
@@ -24,6 +30,39 @@ class Material:
     rho: Value
 
     def __post_init__(self) -> None:
-        """Convert the numbers."""
+        """Convert the numbers, and check those that are none of parameters."""
         for item in fields(self):
             object.__setattr__(self, item.name, as_value(getattr(self, item.name), f"material: {item.name}"))
+        refuse_sizes("material", {item.name: getattr(self, item.name) for item in fields(self)})
+        E, G = self.E, self.G
+        if isinstance(E, float) and isinstance(G, float) and E / G > _LARGEST_RATIO:
+            raise DescriptionError(
+                Problem(
+                    "material: E and G are those of no isotropic material",
+                    f"E = {E:g}, G = {G:g}: Poisson's ratio E/2G - 1 is {E / (2.0 * G) - 1.0:.3g}",
+                    "Poisson's ratio is at most 1/2",
+                    "mend a modulus; of a material with a grain, state EI_y, EI_z, GJ of the beam",
+                )
+            )
+
+
+def refuse_sizes(what: str, sizes: Mapping[str, Value], room: tuple[str, float] | None = None) -> None:
+    """Refuse numbers that are not positive; formulas are judged by what follows from them.
+
+    Args:
+        what: What has them, for the error.
+        sizes: Numbers or formulas, by name.
+        room: Name of a thickness, and the largest that it may be.
+
+    Raises:
+        DescriptionError: One is zero or negative, or the thickness is more than there is room for.
+    """
+    for name, size in sizes.items():
+        if not isinstance(size, Expression) and not size > 0.0:
+            raise DescriptionError(Problem(f"{what}: {name} = {size:g}", f"{size:g}", f"{name} is positive", "mend it"))
+    if room is not None:
+        name, most = room
+        thickness = sizes[name]
+        if not isinstance(thickness, Expression) and thickness > most:
+            rule = f"{name} is at most {most:g}, which fills the section"
+            raise DescriptionError(Problem(f"{what}: {name} = {thickness:g}", f"{thickness:g}", rule, "mend a size"))

@@ -7,7 +7,7 @@ from collections.abc import Sequence
 from functools import lru_cache
 from typing import NamedTuple
 
-from symofros.description.beams.sections.material import Material
+from symofros.description.beams.sections.material import Material, refuse_sizes
 from symofros.description.beams.sections.section import Section, number_of
 from symofros.errors import DescriptionError, Problem
 
@@ -74,6 +74,7 @@ def box(material: Material, y: float, z: float, thickness: float) -> Section:
         z: Outer size along z [m].
         thickness: Thickness of the walls [m].
     """
+    refuse_sizes("box", {"y": y, "z": z, "thickness": thickness}, ("thickness", min(y, z) / 2.0))
     return polygon(material, _rectangle(y, z), (_rectangle(y - 2.0 * thickness, z - 2.0 * thickness),))
 
 
@@ -87,6 +88,8 @@ def i_section(material: Material, y: float, z: float, web: float, flange: float)
         web: Thickness of the web [m].
         flange: Thickness of the flanges [m].
     """
+    refuse_sizes("I section", {"y": y, "z": z, "web": web, "flange": flange}, ("flange", y / 2.0))
+    refuse_sizes("I section", {"web": web}, ("web", z))
     a, b, w, f = y / 2.0, z / 2.0, web / 2.0, y / 2.0 - flange
     quarter = [(a, b), (f, b), (f, w)]
     below = [(-y, z) for y, z in reversed(quarter)]
@@ -104,6 +107,7 @@ def l_section(material: Material, y: float, z: float, thickness: float) -> Secti
         thickness: Thickness of both legs [m].
     """
     t = thickness
+    refuse_sizes("L section", {"y": y, "z": z, "thickness": t}, ("thickness", min(y, z)))
     return polygon(material, [(0.0, 0.0), (y, 0.0), (y, t), (t, t), (t, z), (0.0, z)])
 
 

@@ -10,6 +10,7 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.diagrams.run.examination.energy_balance import energy_note
 from symofros.diagrams.run.examination.examined import Examined, whole_note
+from symofros.diagrams.run.examination.loads_left_out import loads_left_out
 from symofros.diagrams.run.examination.prescribed import Signals, prescribed_inputs
 from symofros.diagrams.run.python_blocks import NotKeptError
 from symofros.simulation.results.examination.creep import creep_note_at
@@ -22,7 +23,7 @@ _ALLOWED, _MOTION = 0.1, 100.0
 
 
 def remarks(run: Examined, modes: Resolution, signal: Signals) -> tuple[str, ...]:
-    """Notes on the steps of a run, on finer ones or on energy; and on joints that creep at its end.
+    """Notes on the steps of a run, on finer ones or on energy; on joints that creep at its end, and on orders of beams.
 
     Args:
         run: Run.
@@ -31,7 +32,7 @@ def remarks(run: Examined, modes: Resolution, signal: Signals) -> tuple[str, ...
     """
     if not len(run.layout.v0) or run.steps < 1 or len(run.states[0]) < 2:
         return ()
-    return (*_on_steps(run, modes), *_creeping(run, signal))
+    return (*_on_steps(run, modes), *_creeping(run, signal), *loads_left_out(run, signal))
 
 
 def _on_steps(run: Examined, modes: Resolution) -> tuple[str, ...]:

@@ -140,6 +140,42 @@ def test_unusable_outlines_are_refused(outline: list[tuple[float, float]]) -> No
         sections.polygon(STEEL, outline)
 
 
+@pytest.mark.parametrize(
+    ("shape", "sizes", "found"),
+    [
+        (sections.rectangle, (0.0, 0.1), "section: y = 0"),
+        (sections.rectangle, (0.1, -0.02), "section: z = -0.02"),
+        (sections.circle, (0.0,), "section: radius = 0"),
+        (sections.ellipse, (0.1, 0.0), "section: z = 0"),
+        (sections.tube, (0.02, 0.0), "section: thickness = 0"),
+        (sections.tube, (0.02, 0.03), "section: thickness = 0.03"),
+        (sections.box, (0.02, 0.03, 0.011), "box: thickness = 0.011"),
+        (sections.i_section, (0.02, 0.03, 0.001, 0.011), "I section: flange = 0.011"),
+        (sections.i_section, (0.02, 0.03, 0.04, 0.001), "I section: web = 0.04"),
+        (sections.l_section, (0.02, 0.03, 0.025), "L section: thickness = 0.025"),
+    ],
+)
+def test_sizes_of_no_section_are_refused(shape: Any, sizes: tuple[float, ...], found: str) -> None:
+    """A wall thicker than its radius was a tube of another area; a size of zero ended in a division by zero."""
+    with pytest.raises(sf.DescriptionError, match=found):
+        shape(STEEL, *sizes)
+
+
+@pytest.mark.parametrize(
+    ("entries", "found"),
+    [
+        ({"E": 0.0}, "material: E = 0"),
+        ({"G": -1.0}, "material: G = -1"),
+        ({"rho": 0.0}, "material: rho = 0"),
+        ({"G": 60e9}, "Poisson's ratio E/2G - 1 is 0.75"),
+    ],
+)
+def test_materials_that_do_not_exist_are_refused(entries: dict[str, float], found: str) -> None:
+    with pytest.raises(sf.DescriptionError, match=found):
+        Material(**({"E": 210e9, "G": 80e9, "rho": 7850.0} | entries))
+    assert Material(E=3.0, G=1.0, rho=1.0).E == 3.0  # Poisson's ratio 1/2.
+
+
 def test_an_outline_of_parameters_is_refused() -> None:
     with pytest.raises(sf.DescriptionError, match="it depends on E"):
         sections.polygon(Material("E", 1.0, 1.0), [(0, 0), (1, 0), (0, 1)])
