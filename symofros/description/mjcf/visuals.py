@@ -33,11 +33,13 @@ class Texture:
 
     Attributes:
         color: Mean of what MuJoCo makes (3), 0 to 1; ones for a picture.
+        squares: Both colors of a cube's checker pattern (3), 0 to 1.
         file: Path of a picture; "" where there is none.
         is_flat: Whether a mesh's places in it are those that its file states: a cube's are not.
     """
 
     color: Array
+    squares: tuple[Array, Array] | None = None
     file: str = ""
     is_flat: bool = False
 
@@ -71,11 +73,11 @@ def _texture(folder: Folder, stated: dict[str, str], base: str, settings: dict[s
         )
         if colors[0] is None or colors[1] is None:
             return None
-        share = _SHARES[builtin]
-        mean = (1.0 - share) * np.array(colors[0]) + share * np.array(colors[1])
-        return Texture(np.clip(mean, 0.0, 1.0))
+        share, first, second = _SHARES[builtin], np.clip(colors[0], 0.0, 1.0), np.clip(colors[1], 0.0, 1.0)
+        is_cube = builtin == "checker" and stated.get("type", "cube") == "cube"
+        return Texture((1.0 - share) * first + share * second, (first, second) if is_cube else None)
     path = folder.seen(asset_path(file, base, settings)) if file is not None else ""
-    return Texture(np.ones(3), path, stated.get("type", "cube") == "2d") if path else None
+    return Texture(np.ones(3), None, path, stated.get("type", "cube") == "2d") if path else None
 
 
 # Share of rgb2 in the color of what MuJoCo makes, on all sides of a cube but its lower one.
@@ -134,6 +136,9 @@ def visuals_of(
             picture = "" if texture is None else texture.file
             is_mapped = texture is not None and texture.is_flat
             visual = replace(visual, color=color, picture=picture, is_mapped=is_mapped)
+            if texture is not None and texture.squares is not None and visual.kind != "mesh":
+                first, second = (color_of((rgba[:3] * square).tolist()) for square in texture.squares)
+                visual = replace(visual, color=first, checker=second)
             visuals[body] = (*visuals.get(body, ()), visual)
     return visuals
 

@@ -171,3 +171,19 @@ def test_copies_are_drawn_each(tmp_path: Path) -> None:
         file.read_text().replace(shape, f'<replicate count="3" offset="1 0 0" euler="0 0 30">{shape}</replicate>')
     )
     assert len({one.position for one in sf.load(file).visuals["a"]}) == 3
+
+
+@pytest.mark.parametrize(("kind", "checker"), [("cube", (0, 0, 255)), ("2d", None)])
+def test_a_cubes_checker_keeps_its_two_colors(kind: str, checker: object, tmp_path: Path) -> None:
+    file = written(tmp_path, geom='material="skin"')
+    ball = '<geom type="sphere" size="1" material="skin"/></body>'
+    made = f'<texture name="t" builtin="checker" type="{kind}" rgb1="1 0 0" rgb2="0 0 1" width="8" height="8"/>'
+    text = (
+        file.read_text()
+        .replace("</body>", ball)
+        .replace("<asset>", f'<asset>{made}<material name="skin" texture="t"/>')
+    )
+    file.write_text(text)
+    mesh, sphere = sf.load(file).visuals["a"]
+    assert mesh.checker is None and mesh.color == (128, 0, 128)
+    assert sphere.checker == checker and sphere.color == ((255, 0, 0) if checker else (128, 0, 128))

@@ -235,7 +235,9 @@ class _DrawingBuilder:
                 mesh = mesh.transformed(*placed(frame.placement, self.numbers))
                 element = self._element(body.name)
                 # A color of the description goes before those of the file, but not before those of its own picture.
-                parts = mesh.by_color() if visual.picture or not visual.color else [(visual.color, mesh)]
+                parts = (
+                    mesh.by_color() if visual.picture or visual.checker or not visual.color else [(visual.color, mesh)]
+                )
                 for i, (stated, part) in enumerate(parts):
                     name = f"visuals/{body.name}.{k}" + (f".{i}" if len(parts) > 1 else "")
                     yield DrawnPart(name, "visuals", frame.link, part, stated or self._color(frame.link), element)

@@ -7,6 +7,7 @@ import logging
 import warnings
 from functools import lru_cache
 from importlib import import_module
+from itertools import product
 from pathlib import Path
 from typing import Any
 
@@ -120,7 +121,22 @@ _R_DESCRIBED_GLTF = np.array([[1.0, 0.0, 0.0], [0.0, 0.0, -1.0], [0.0, 1.0, 0.0]
 def visual_mesh(visual: Visual) -> Mesh | None:
     """A shape in its own frame; None, with a warning, for a mesh that can't be read."""
     mesh = _shape(visual)
+    if mesh is not None and visual.checker is not None:
+        return _checkered(mesh, visual.color or visual.checker, visual.checker)
     return mesh if mesh is None or not visual.picture else _painted(mesh, visual)
+
+
+def _checkered(mesh: Mesh, first: tuple[int, int, int], second: tuple[int, int, int]) -> Mesh:
+    """A shape cut at the planes of its axes: the first color where x y z > 0, as MuJoCo lays its checker on a cube."""
+    cut = import_module("trimesh.intersections").slice_faces_plane
+    octants = []
+    for signs in product((1.0, -1.0), repeat=3):
+        vertices, faces = mesh.vertices, mesh.faces
+        for normal in np.diag(signs):
+            vertices, faces, _ = cut(vertices, faces, normal, np.zeros(3))
+        color = np.array(first if np.prod(signs) > 0.0 else second, dtype=np.int16)
+        octants.append(Mesh(vertices, faces.astype(np.int64), np.tile(color, (len(faces), 1))))
+    return merged(octants)
 
 
 def _painted(mesh: Mesh, visual: Visual) -> Mesh:

@@ -350,3 +350,15 @@ def test_gltf_is_turned_from_y_up_to_z_up(form: str, tmp_path: Path) -> None:
     assert mesh is not None
     assert mesh.vertices.tolist() == [[x, -z, y] for x, y, z in CORNERS.tolist()]
     assert volume(mesh) == pytest.approx(1.0)
+
+
+@pytest.mark.parametrize(
+    "visual", [Visual("box", (1.0, 2.0, 3.0)), Visual("sphere", (0.5,)), Visual("capsule", (0.5, 2.0))]
+)
+def test_a_checker_has_its_colors_by_octants_and_changes_no_shape(visual: Visual) -> None:
+    """MuJoCo draws the first color where x y z > 0, on each side of a cube (its renderer, asked once)."""
+    plain, mesh = visual_mesh(visual), visual_mesh(replace(visual, color=RED, checker=BLUE))
+    assert plain is not None and mesh is not None and mesh.colors is not None
+    middles = mesh.vertices[mesh.faces].mean(axis=1)
+    assert (mesh.colors == np.where(middles.prod(axis=1, keepdims=True) > 0.0, RED, BLUE)).all()
+    assert volume(mesh) == pytest.approx(volume(plain), rel=1e-9)
