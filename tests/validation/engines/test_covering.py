@@ -86,6 +86,19 @@ def test_forces_of_constraints_are_known_to_the_roundings_of_others() -> None:
     assert all(_excess(tree, "scene_qfrc_constraint", wrong, SINGLE) > 0.0 for tree in made)
 
 
+def test_a_fault_at_speeds_hides_nothing_at_rest() -> None:
+    """Speeds that are taken twice are none at rest; forces that are taken twice are seen there."""
+    pytest.importorskip("mujoco", reason=needs_extra("engine-mjx", "mujoco"))
+    fast, pushed = (
+        _ITSELF.replace("in_c(given)", f"in_c(dict(given, {name}=2.0 * given['{name}']))")
+        for name in ("qvel", "xfrc_applied")
+    )
+    tree = next(tree for tree in _without_rk4() if "unconstrained" in tree.features)
+    assert _excess(tree, "scene_qacc", fast) > 0.0 and _excess(tree, "scene_qacc:at rest", pushed) > 0.0
+    at_rest = [name for name in covered.ways() if name.endswith(":at rest")]
+    assert len(at_rest) == 5 and {_excess(tree, name, fast) for name in at_rest} == {0.0}
+
+
 def test_a_fault_of_two_features_is_found_and_made_small() -> None:
     """Dampers without springs."""
     pytest.importorskip("mujoco", reason=needs_extra("engine-mjx", "mujoco"))

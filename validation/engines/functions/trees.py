@@ -19,6 +19,7 @@ def _momentum(t: Truth, s: Point) -> Exact:
 
 TREES: dict[str, Function] = {
     "sizes": Function("lengths of q and v (2)", lambda t, s: np.array([Decimal(len(s.q)), Decimal(len(s.v))])),
+    "coordinates": Function("q, v (nq + nv)", lambda t, s: np.concatenate([s.q, s.v])),
     "mass_matrix": Function("M (nv, nv)", lambda t, s: t.M(s.q)),
     "mass_matrix_inverse": Function("M^-1 (nv, nv)", lambda t, s: t.inverse(s.q)),
     "bias": Function("h (nv): Coriolis, centrifugal and gravity forces", lambda t, s: t.h(s.q, s.v)),

@@ -171,3 +171,49 @@ before = p.EvalTimeDerivatives(c).CopyToVector()[-p.num_velocities() :]
 after = p.EvalTimeDerivatives(c).CopyToVector()[-p.num_velocities() :]
 value = p.CalcMassMatrix(c) @ (after - before)
 """)
+
+# Bodies, and frames on them, are each of a model instance of its own, so that each joint is between two.
+_INSTANCES = (
+    (
+        "p = drake",
+        """def own(): return p.AddModelInstance(f'one of {p.num_model_instances()}')
+frame = drake.FixedOffsetFrame
+def body(name, inertia): return drake.MultibodyPlant.AddRigidBody(p, name, own(), inertia)
+def offset(name, on, X): return frame(name, on if isinstance(on, drake.Frame) else on.body_frame(), X, own())
+p = drake""",
+    ),
+    ("p.AddRigidBody(", "body("),
+    ("drake.FixedOffsetFrame(", "offset("),
+)
+_OWN = """x = np.full(len(q) + len(v), np.nan)
+for j in js:
+    k, n, m = j.model_instance(), j.num_positions(), j.num_velocities()
+    at = x[: len(q)][j.position_start() :][:n], x[len(q) :][j.velocity_start() :][:m]
+    for own, of in zip(at, OF):
+        if len(of) == len(own): own[:] = of
+value = x"""
+WAYS |= {
+    f"coordinates{name}": Way(native, code, built=_INSTANCES)
+    for name, native, code in (
+        (
+            "",
+            "GetPositions, GetVelocities of model instances",
+            f"{QV}{_OWN.replace('OF', '(p.GetPositions(c, k), p.GetVelocities(c, k))')}",
+        ),
+        (
+            ":from arrays",
+            "GetPositionsFromArray, GetVelocitiesFromArray",
+            _OWN.replace("OF", "(p.GetPositionsFromArray(k, q), p.GetVelocitiesFromArray(k, v))"),
+        ),
+        (
+            ":set",
+            "SetPositions, SetVelocities of model instances",
+            """js
+for j in js[::-1]:
+    k, at, to = j.model_instance(), j.position_start(), j.velocity_start()
+    p.SetPositions(c, k, np.resize(q[at : at + j.num_positions()], p.num_positions(k)))
+    p.SetVelocities(c, k, np.resize(v[to : to + j.num_velocities()], p.num_velocities(k)))
+value = p.GetPositionsAndVelocities(c)""",
+        ),
+    )
+}

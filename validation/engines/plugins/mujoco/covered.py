@@ -15,6 +15,8 @@ from ...models.covering import mjcf
 from ..writing.source import Source, Way
 
 _SLOTS = ((Slot("free wxyz, linear before and angular after", (0, 1, 2, 3, 4, 5, 6), (0, 1, 2, 3, 4, 5)),),)
+# Fields that are asked of scenes at rest, too: what an engine has wrong at speeds hides nothing else there.
+_AT_REST = ("qfrc_constraint", "qacc", "sensordata:ACC", "qpos", "qvel")
 _STATE = ("scene_qpos", "scene_qvel", "scene_act", "scene_time")
 # Roundings that a field may be off by: of the largest entry, and of what is set, as they move each entry.
 _ROUNDINGS = 256
@@ -44,10 +46,11 @@ def part(name, of):
     if not stage: return x
     return x[np.repeat(m.sensor_needstage, m.sensor_dim) == getattr(mj.mjtStage, 'mjSTAGE_' + stage)]
 asked = {{}}
-def agrees(name, *state):
+def agrees(name, *state, at_rest=False):
     numbers = np.concatenate(state)
-    if (key := numbers.tobytes()) not in asked:
+    if (key := (numbers.tobytes(), at_rest)) not in asked:
         given = set_to(numbers)
+        if at_rest: given['qvel'] = 0 * given['qvel']
         other = [in_c(near(given, seed)) for seed in range(4)]
         asked[key] = in_c(given), other, stepped(m, given)
     d, other, engine = asked[key]
@@ -68,7 +71,12 @@ def ways(without: Collection[str] = ()) -> dict[str, Way]:
     made = {
         name: Way(native, f"value = agrees({field!r}, q, v, a, tau)") for name, (field, native, _) in FIELDS.items()
     }
-    return {name: way for name, way in made.items() if name not in without}
+    made |= {
+        f"{name}:at rest": Way(native, f"value = agrees({field!r}, q, v, a, tau, at_rest=True)")
+        for name, (field, native, _) in FIELDS.items()
+        if field in _AT_REST
+    }
+    return {name: way for name, way in made.items() if name.partition(":")[0] not in without}
 
 
 def _is_of_one_release(package: str) -> bool:
@@ -97,7 +105,7 @@ def write(tree: Tree, package: str, roundoff: float, lines: str) -> Source | Uns
     # MuJoCo leaves it at zero then, which its documentation does not say.
     lacks: tuple[str, ...] = ("scene_actuator_velocity",) if "no actuation" in tree.features else ()
     if "RK4" in tree.features:  # Of which of its stages the other fields are, no documentation says.
-        lacks = tuple(name for name in FIELDS if name not in _STATE)
+        lacks = tuple(name for name in ways() if name.partition(":")[0] not in _STATE)
     return Source(
         (
             "import numpy as np",
