@@ -24,7 +24,7 @@ static const char *fmu_reason(int32_t status) {
         return "no forces of rigid contacts were found that agree with Coulomb's law (Painleve's paradox)";
     case SYM_CONTACTS_AMBIGUOUS:
         return "several motions agree with Coulomb's law at rigid contacts (Painleve's paradox)";
-    case SYM_FLAT_RIM: return "a rim of a rigid contact lies on its plane, a segment along its surface, or a rim touches a cylinder at two points: no single point touches";
+    case SYM_FLAT_RIM: return "a rim of a rigid contact lies on its plane, a segment along its surface, and nothing else carries it; or a rim touches a cylinder at two points";
     default: return NULL;
     }
 }

@@ -120,10 +120,10 @@ ENDS: dict[int, End] = {
     ),
     Status.FLAT_RIM: End(
         "beyond theory",
-        "a rim of a rigid contact lies on its plane, or a segment along its surface, to 0.6 degrees, and touches all"
-        " along; or a rim comes to touch a cylinder at two points",
-        "points along the rim or segment in its place, on which a body can lie: `points` without `rim` or `segment`;"
-        " of capsules that lie along each other, at the ends of both",
+        "a rim of a rigid contact lies on its plane, or a segment along its surface, to 0.6 degrees, touches all along,"
+        " and no other contact carries it; or a rim comes to touch a cylinder at two points",
+        "beside the rim or segment `points` on which the body can lie: a capsule's ends; of capsules that lie along"
+        " each other the ends of both; across the edges of a box these edges as segments on the capsule",
     ),
     Status.BEYOND_THEORY: End(
         "beyond theory", "a beam is bent beyond its theory", "more modes or segments; or move the limit, beam_limit=..."

@@ -272,6 +272,16 @@ def test_a_capsule_tips_over_the_end_of_the_one_below() -> None:
     assert (x * np.cos(tilt) + arm * np.sin(tilt) * np.sign(tilt[-1])) == pytest.approx(0.2 + RADIUS, abs=1e-9)
 
 
+def test_capsules_in_line_strike_by_their_ends() -> None:
+    """Their axes are parallel, but they touch at one point: a cue and another one, and a blow beside the axis."""
+    model = two("capsule", e=0.5)
+    q, v = model.neutral(), np.zeros(12)
+    q[2], v[2] = -1.0, 2.0
+    run = sf.simulate(model, q, v, t_end=0.3, **FINE)
+    assert run.outcome.ok and run.v[-1, [2, 8]] == pytest.approx([0.5, 1.5], abs=1e-12)
+    assert run.events[0].t == pytest.approx((1.0 - HALF - 0.3 - RADIUS - 0.2) / 2.0, abs=1e-12)
+
+
 def test_segments_that_lie_along_a_surface_are_refused_in_words() -> None:
     """Parallel capsules touch along a line; and what segments do not meet is refused."""
     model = two("capsule")

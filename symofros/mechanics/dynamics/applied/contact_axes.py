@@ -137,7 +137,7 @@ class Reach(NamedTuple):
     Attributes:
         reach: The vector [m].
         rate: Its rate [m/s].
-        sine: Of the angle between the planes of rim and contact, or of that between a segment and the surface's axis;
+        sine: Of the angle between the planes of rim and contact, of a segment (38m), (38n);
             of a rim on a cylinder sigma/lambda of (38j): near zero no single point is next to the surface.
     """
 
@@ -241,7 +241,7 @@ def _unit(g: Graph, x: Vec3) -> Vec3:
 
 
 def segment_reach(lowering: Lowering, contact: Contact, A: Line, B: Line) -> Reach:
-    """Where a segment on the line A is next to the core of a solid along B, and how that point moves: (38h)."""
+    """Where a segment on the line A is next to the core of a solid along B, and how that point moves: (38h), (38m)."""
     g = lowering.g
     half = g.mul(g.constant(0.5), lowering.value(contact.segment or 0.0))
     c, c_rate = A.p - B.p, A.v - B.v
@@ -252,7 +252,6 @@ def segment_reach(lowering: Lowering, contact: Contact, A: Line, B: Line) -> Rea
         x, x_rate = A.a.dot(B.a), g.add(A.a_rate.dot(B.a), A.a.dot(B.a_rate))
         z, z_rate = B.a.dot(c), g.add(B.a_rate.dot(c), B.a.dot(c_rate))
         square = g.call("max", g.sub(ONE, g.mul(x, x)), g.constant(TINY))
-        sine = g.sqrt(square)
         s = g.div(g.sub(g.mul(x, z), y), square)
         s_rate = g.sub(g.add(g.mul(x_rate, z), g.mul(x, z_rate)), y_rate)
         s_rate = g.div(g.add(s_rate, g.mul(g.mul(g.constant(2.0), s), g.mul(x, x_rate))), square)
@@ -262,11 +261,15 @@ def segment_reach(lowering: Lowering, contact: Contact, A: Line, B: Line) -> Rea
             t, t_rate = _clamped(g, t, t_rate, g.mul(g.constant(0.5), lowering.value(contact.length or 0.0)))
     s_rate = g.sub(g.add(g.mul(t_rate, x), g.mul(t, x_rate)), y_rate)
     s, s_rate = _clamped(g, g.sub(g.mul(t, x), y), s_rate, half)
+    if contact.surface != "sphere":
+        away = c + A.a.scaled(s) - B.a.scaled(t)
+        end = g.div(A.a.dot(away), norm(g, away))  # Zero but where an end is next to the core.
+        sine = g.sqrt(g.add(square, g.mul(end, end)))
     return Reach(A.a.scaled(s), A.a.scaled(s_rate) + A.a_rate.scaled(s), sine)
 
 
 def box_reach(lowering: Lowering, contact: Contact, on_ball: Line, S: Triad) -> Reach:
-    """Where a segment is next to a box, and how that point moves: (38i), in the axes of the box."""
+    """Where a segment is next to a box, and how that point moves: (38i), (38n), in the axes of the box."""
     g, line = lowering.g, on_ball.seen_from(S)
     half = g.mul(g.constant(0.5), lowering.value(contact.segment or 0.0))
     halves = [g.mul(g.constant(0.5), lowering.value(size)) for size in contact.size or ()]
@@ -299,7 +302,10 @@ def box_reach(lowering: Lowering, contact: Contact, on_ball: Line, S: Triad) -> 
     parts = zip(outside, line.a, line.a_rate, moved, beyond(s), strict=True)
     change = g.sum(g.mul(w, g.add(g.mul(a_rate, y), g.mul(a, x_rate))) for w, a, a_rate, x_rate, y in parts)
     s, s_rate = _clamped(g, s, -g.div(change, steep), half)
-    return Reach(on_ball.a.scaled(s), on_ball.a.scaled(s_rate) + on_ball.a_rate.scaled(s), g.sqrt(steep))
+    y = Vec3(g, *beyond(s))
+    n = y.scaled(g.div(ONE, norm(g, y)))
+    flat = Vec3(g, *(g.mul(a, across) for a, across in zip(line.a, n, strict=True)))
+    return Reach(on_ball.a.scaled(s), on_ball.a.scaled(s_rate) + on_ball.a_rate.scaled(s), norm(g, flat))
 
 
 def _within(g: Graph, x: Edge, half: Edge) -> Edge:

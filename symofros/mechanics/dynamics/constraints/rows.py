@@ -255,7 +255,7 @@ class Constraints:
             yield self._row(phi, contact.dot(e), -drift.dot(e), [(B, e, r.cross(e), 1)])
 
     def _touching(self, touching: Touching) -> Iterator[Row]:
-        """A ball or rim on a surface: its distance and the speed of its point of contact vanish (eqs. 38a to 38l)."""
+        """A ball or rim on a surface: its distance and the speed of its point of contact vanish (eqs. 38a to 38n)."""
         g, contact, lowering = self.g, touching.contact, self.kinematics.lowering
         S, B = self._state(touching.first), self._state(touching.second)
         radius, arm = lowering.value(contact.radius), B.R.times(lowering.vector(contact.points[touching.ball]))

@@ -127,11 +127,17 @@ static void sym_choose_poles(const sym_system *s, double *par) {
     sym_evaluate(&s->contact_state);
 }
 
+/* The events of a ball have been dealt with at the present time: changes within rounding are none from here on. */
+static void sym_ball_settled(sym_run *r, int32_t ball) {
+    double *acted_at = r->acted_at + sym_first_contact_event(r) + 2 * ball;
+    acted_at[0] = fmax(acted_at[0], r->t), acted_at[1] = fmax(acted_at[1], r->t);
+}
+
 /* Balls that touch at the present state, which becomes the evaluation point, by their modes, by what has been met, and by where
  * they are. Returns 0 or a status: one has penetrated where a motion begins, too many touch, or one touches along a line. */
 static int32_t sym_find_touching(sym_run *r, double *par, const double *met, int32_t begins, sym_touching *at) {
     const sym_system *s = r->system;
-    int32_t i, k, n = 0;
+    int32_t i, k, n = 0, flat = 0;
     sym_load_state(r);
     if (sym_evaluate_inputs(r->system) != 0) return SYM_CALLBACK_FAILED;
     sym_evaluate(&s->contact_state);
@@ -140,8 +146,13 @@ static int32_t sym_find_touching(sym_run *r, double *par, const double *met, int
         const double *state = s->contact_state.out[0] + SYM_CONTACT_ENTRIES * i;
         if (begins && state[0] < -SYM_TOUCHING) return SYM_WRONG_CONTACT;
         if (par[s->contacts[i].mode] == SYM_OPEN && state[0] > SYM_TOUCHING && !(met != NULL && met[i] > 0.0)) continue;
+        if (state[SYM_SINE] < SYM_FLAT) { /* open while others carry it, (40a) */
+            if (state[0] < -SYM_TOUCHING) return SYM_FLAT_RIM;
+            par[s->contacts[i].mode] = SYM_OPEN, par[s->contacts[i].apart] = SYM_LIES, flat = 1;
+            sym_ball_settled(r, i);
+            continue;
+        }
         if (n == SYM_MOST_CONTACTS) return SYM_WRONG_CONTACT;
-        if (state[SYM_SINE] < SYM_FLAT) return SYM_FLAT_RIM;
         at->of[n] = i, at->problem.mu[n] = state[4];
         at->problem.parts[n] = at->problem.slides[n] = 0, at->problem.d[2 * n] = 1.0, at->problem.d[2 * n + 1] = 0.0;
         at->apart[n] = met == NULL ? 0.0 : par[s->contacts[i].apart]; /* as it has become, where others are met */
@@ -151,7 +162,7 @@ static int32_t sym_find_touching(sym_run *r, double *par, const double *met, int
         ++n;
     }
     at->problem.n = n;
-    return 0;
+    return flat && n == 0 ? SYM_FLAT_RIM : 0;
 }
 
 /* How the balls that touch move: which slide, and in which direction; which move away. Where a slip turns again within an instant
@@ -299,8 +310,8 @@ static int32_t sym_settle_once(sym_run *r, const double *met, int32_t begins, in
     for (i = 0; i < at.problem.n; ++i) {
         const sym_rigid_contact *of = s->contacts + at.of[i];
         const double *W = at.problem.W + 9 * i * at.problem.n + 3 * i;
-        double *known = sym_ball_memory(s, at.of[i]), *acted_at = r->acted_at + sym_first_contact_event(r) + 2 * at.of[i];
-        acted_at[0] = fmax(acted_at[0], r->t), acted_at[1] = fmax(acted_at[1], r->t);
+        double *known = sym_ball_memory(s, at.of[i]);
+        sym_ball_settled(r, at.of[i]);
         known[0] = at.problem.d[2 * i], known[1] = at.problem.d[2 * i + 1], known[2] = SYM_SLOW;
         if (!r->adaptive) known[2] = s->longest_step * at.problem.mu[i] * fmax(W[0], W[3 * at.problem.n + 1]) * fabs(at.problem.f[3 * i + 2]);
         if (sym_is_idle(&at.problem, i, load)) at.apart[i] = fmax(SYM_IDLES, at.apart[i]);

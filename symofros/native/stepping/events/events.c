@@ -59,6 +59,8 @@ static int32_t sym_record_events_at_cut(sym_run *r, sym_event_search *search, do
 
 /* Gap [m, rad] and force [N, N m] of a contact that are rounding. */
 #define SYM_TOUCHING 1e-9
+/* By which a rim or segment that lies along its surface may pass it, while others carry it, until it is known that none does [m]. */
+#define SYM_LIES (2.0 * SYM_TOUCHING)
 
 /* Whether contacts that rest are where they can begin: not penetrated, or pressing. Returns 0 or a status. */
 static int32_t sym_check_contacts(const sym_run *r) {
@@ -184,6 +186,12 @@ static int sym_leaves_contact(const sym_run *r, int32_t i) {
     return opens >= 0 && (r->acted_at[i] == r->t || r->acted_at[opens] == r->t);
 }
 
+/* Whether event i is of a rim or segment that lies along its surface: other contacts carry it, near to zero. */
+static int sym_lies_along(const sym_run *r, int32_t i) {
+    const int32_t which = r->actions == NULL || r->system->n_contacts == 0 ? -1 : i - sym_first_contact_event(r);
+    return which >= 0 && r->par[r->system->contacts[which / 2].apart] >= SYM_LIES;
+}
+
 /* Keep what was noted of the events of a step, the first of each kind: one that turns at x nearer to zero than the errors of
  * the state let it be known, one that was not followed. Returns 0 or a status. */
 static int32_t sym_keep_event_notes(sym_event_step *step, const sym_event_search *search) {
@@ -194,7 +202,7 @@ static int32_t sym_keep_event_notes(sym_event_step *step, const sym_event_search
     int32_t status, is_zero = 0;
     if (r->unresolved_event < 0 && search->unresolved >= 0)
         r->unresolved_event = search->unresolved, r->unresolved_t = r->t;
-    if (r->touched_event >= 0 || i < 0 || sym_leaves_contact(r, i)) return 0;
+    if (r->touched_event >= 0 || i < 0 || sym_leaves_contact(r, i) || sym_lies_along(r, i)) return 0;
     status = sym_event_is_rounding(step, i, search->touched_x, &past);
     if (status != 0 || past > 0.0) return status;
     status = sym_event_is_at_zero(step, i, search->touched_x, rtol, atol, &is_zero);
