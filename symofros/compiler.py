@@ -39,7 +39,7 @@ from symofros.generator.record import GENERATOR as GENERATOR
 from symofros.generator.record import model_record
 from symofros.generator.units import UnitCompiler
 from symofros.mechanics.dynamics.functions import Request
-from symofros.mechanics.topology.beams import omitted_rotary_inertia
+from symofros.mechanics.topology.beams import omitted_rotary_inertia, omitted_shear
 from symofros.mechanics.topology.events import tree_with_events
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.remarks import rotation_remarks
@@ -292,7 +292,7 @@ class Compilation:
 
 
 def inconsistencies(system: System) -> Iterator[str]:
-    """Warnings about beams: stated rotary inertia that does not count, and softening by spin without stiffening."""
+    """Warnings about beams: rotary inertia and shear that do not count, and softening by spin without stiffening."""
     beams = system.beams
     if not beams:
         return
@@ -302,6 +302,12 @@ def inconsistencies(system: System) -> Iterator[str]:
             yield (
                 f"beam '{body.name}': {label} is stated and does not count, as rotary_inertia is false: it would lower"
                 f" the frequency of bending mode {mode} by {share:.1%}. Set rotary_inertia: true, or state no {label}."
+            )
+        for plane, mode, share, more in omitted_shear(body, numbers):
+            yield (
+                f"beam '{body.name}': its sections do not shear in bend_{plane}: of the depth that its inertia shows,"
+                f" that would lower the frequency of mode {mode} there by about {share:.1%}, and add {more:.1%} to the"
+                f" deflection under a load at the tip. State theory: strain, shear_{plane}: 1 or more, and GA_{plane}."
             )
         if not body.foreshortening and body.retain == "first_order" and body.modes:
             yield (

@@ -28,8 +28,10 @@ QUADRATURE_TOLERANCE = 1e-9
 _POINTS = (16, 24)
 # Error, between a rod's sections, of what is known at them alone, over its largest value.
 INTERPOLATION_TOLERANCE = 1e-3
-# Relative drop of a frequency by rotary inertia, stated and left out, up to which nothing is said.
+# Relative drop of a frequency by rotary inertia or shear that is left out, up to which nothing is said.
 MAX_FREQUENCY_DROP = 0.01
+# EI rhoA/(GA rhoI) where GA is not stated: E/G over the shear factor, 2.4 to 3.6 of full isotropic sections.
+ISOTROPIC_SHEAR = 3.0
 # Stations x/L at which section properties are looked at.
 _STATIONS = np.linspace(0.0, 1.0, 33)
 
@@ -81,16 +83,51 @@ def omitted_rotary_inertia(beam: Beam, numbers: Numbers) -> Iterator[tuple[str, 
     """
     if beam.rotary_inertia:
         return
-    middle, length = np.array([0.5]), numbers.value(beam.length)
-    for label, count in (("rhoI_z", beam.bend_y), ("rhoI_y", beam.bend_z)):
-        if not count or getattr(beam, label) == 0.0:
-            continue
-        mode = max(1, count * beam.segments - 1)
-        stated = getattr(beam, label), beam.rhoA
-        inertia, mass = (section_values(beam, value, middle, numbers.parameters).item() for value in stated)
-        share = 1.0 - 1.0 / np.sqrt(1.0 + _squared_slope(mode) / length**2 * inertia / mass)
+    for plane, mode, square in _squared_radii(beam, numbers):
+        share = _frequency_drop(mode, square)
         if share > MAX_FREQUENCY_DROP:
-            yield label, mode, float(share)
+            yield f"rhoI_{_ACROSS[plane]}", mode, share
+
+
+def omitted_shear(beam: Beam, numbers: Numbers) -> Iterator[tuple[str, int, float, float]]:
+    """Shear that the beam does not have and that is not small (docs/theory/beams.md, eq. 13b).
+
+    Yields:
+        Plane of bending, a mode of it, the second at most, the share by which shear lowers its frequency, and the share
+        that it adds to the deflection under a load at the tip.
+    """
+    for plane, highest, square in _squared_radii(beam, numbers):
+        if getattr(beam, f"shear_{plane}"):
+            continue
+        GA, ratio = getattr(beam, f"GA_{plane}"), ISOTROPIC_SHEAR * square
+        if GA != 0.0 and not beam.stiffness:
+            EI = getattr(beam, f"EI_{_ACROSS[plane]}")
+            ratio = _at_middle(beam, EI, numbers) / _at_middle(beam, GA, numbers) / numbers.value(beam.length) ** 2
+        mode = min(highest, 2)
+        share = _frequency_drop(mode, ratio)
+        if share > MAX_FREQUENCY_DROP:
+            yield plane, mode, share, 3.0 * ratio
+
+
+# Axis about which bending in a plane turns sections.
+_ACROSS = {"y": "z", "z": "y"}
+
+
+def _squared_radii(beam: Beam, numbers: Numbers) -> Iterator[tuple[str, int, float]]:
+    """Planes of bending whose inertia is stated: the highest mode but one, and rhoI/(rhoA L^2) at mid-length."""
+    for plane, count in (("y", beam.bend_y), ("z", beam.bend_z)):
+        inertia = getattr(beam, f"rhoI_{_ACROSS[plane]}")
+        if count and inertia != 0.0:
+            mass, length = _at_middle(beam, beam.rhoA, numbers), numbers.value(beam.length)
+            yield plane, max(1, count * beam.segments - 1), _at_middle(beam, inertia, numbers) / mass / length**2
+
+
+def _at_middle(beam: Beam, value: Value, numbers: Numbers) -> float:
+    return float(section_values(beam, value, np.array([0.5]), numbers.parameters).item())
+
+
+def _frequency_drop(mode: int, ratio: float) -> float:
+    return float(1.0 - 1.0 / np.sqrt(1.0 + _squared_slope(mode) * ratio))
 
 
 def _squared_slope(mode: int) -> float:
