@@ -41,6 +41,7 @@ def _checked(data: Data) -> Report:
             Section(
                 "What an engine could not represent",
                 (Table.of("engine | model | quantity | reason", apart),),
+                "gaps",
                 page_only=True,
             ),
             _effort(data),
@@ -100,7 +101,7 @@ def _effort(data: Data) -> Section:
         f"{counted(spent['executions'], 'execution')}, {len(spent['repeated'])} batches begun twice. "
         "Every row: results.parquet."
     )
-    return Section("What it took", (said,))
+    return Section("What it took", (said,), "effort")
 
 
 # What writes it at the everyday size.

@@ -94,11 +94,16 @@ def compose(data: Data) -> Report:
             Section(
                 "How fast",
                 (_SPEED, Table.of("model | function | yardsticks | noise | ns a state", speeds)),
+                "speed",
                 page_only=True,
             ),
-            Section("What an engine could not represent", (_NOT_COMPARED, Table.of("engine | models | reason", apart))),
+            Section(
+                "What an engine could not represent",
+                (_NOT_COMPARED, Table.of("engine | models | reason", apart)),
+                "gaps",
+            ),
             _method(),
-            Section("Models", tuple(map(_model, record.models)), page_only=True),
+            Section("Models", tuple(map(_model, record.models)), "each", page_only=True),
         ),
         facts=tuple(_facts(record, engines)),
         digest=(*_digest(record), *baseline),
@@ -151,8 +156,8 @@ def _closeness(record: Record, engines: list[str]) -> tuple[Section, ...]:
     condition = Figure(_CONDITION, error_against_condition(record))
     return (
         Section("How close", (Figure(_CLOSE, error_distributions(record.distributions)),), "close", page_only=True),
-        Section("Model by model", (_BY_MODEL, tables.by_model(record), *alone)),
-        Section("Forward dynamics and the condition of M", (condition,), page_only=True),
+        Section("Model by model", (_BY_MODEL, tables.by_model(record), *alone), "models"),
+        Section("Forward dynamics and the condition of M", (condition,), "condition", page_only=True),
     )
 
 
@@ -179,10 +184,10 @@ def _own(record: Record) -> tuple[Section, ...]:
     procedure = Table.of("model | what | error | allowed", procedures)
     relation = Table.of("model | relation | error | allowed | where", related)
     return (
-        Section("Energy along a free motion", (_ENERGY, drift), page_only=True),
-        Section("Beams against finite elements", (_ELEMENTS, power), page_only=True),
-        Section("Other descriptions of the same mechanism", (_RELATIONS, relation), page_only=True),
-        Section("What is done with the equations", (_PROCEDURES, procedure), page_only=True),
+        Section("Energy along a free motion", (_ENERGY, drift), "energy", page_only=True),
+        Section("Beams against finite elements", (_ELEMENTS, power), "elements", page_only=True),
+        Section("Other descriptions of the same mechanism", (_RELATIONS, relation), "relations", page_only=True),
+        Section("What is done with the equations", (_PROCEDURES, procedure), "procedures", page_only=True),
     )
 
 
@@ -190,7 +195,7 @@ def _method() -> Section:
     rows = ((q.name, q.symbol, q.unit, digits(q.tolerance), _REASONS.get(q.tolerance, _USUAL)) for q in tables.COMPARED)
     quantities = Table.of("quantity | symbol | unit | tolerance | reason", rows)
     conventions = Section(_CONVENTIONS, (Table.of("engine | what | SYMOFROS | the engine", differences()),))
-    return Section("How it is measured", (_METHOD, quantities, conventions), page_only=True)
+    return Section("How it is measured", (_METHOD, quantities, conventions), "method", page_only=True)
 
 
 def _model(model: ModelResult) -> Section:

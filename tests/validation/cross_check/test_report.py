@@ -79,6 +79,12 @@ def test_the_page_needs_nothing_from_outside(mixed: Data) -> None:
     assert re.findall(r'https?://[^"\s<]+', page.replace("http://www.w3.org/2000/svg", "")) == []
 
 
+def test_long_sections_are_folded_and_what_disagrees_is_not(mixed: Data) -> None:
+    written = html.page(compose(mixed))
+    assert "<h2>What disagrees or failed</h2>" in written
+    assert all(f'<div id="{name}">' in written for name in ("models", "gaps", "method", "each"))
+
+
 def test_names_from_files_cannot_break_the_page(mixed: Data) -> None:
     assert NASTY not in to_html(mixed) and "&lt;script&gt;" in to_html(mixed)
     for block in to_markdown(mixed).split("\n\n"):
