@@ -3,11 +3,13 @@
 from __future__ import annotations
 
 import math
+from dataclasses import replace
 
 import numpy as np
 import pytest
 from scipy.linalg import expm
 
+from tests.late import needs_extra
 from validation.engines.interface import Slot, Tree
 from validation.engines.matrix import SEED, cells
 from validation.engines.models import flexible, single
@@ -215,6 +217,23 @@ def test_rotations_are_right(engine: str) -> None:
     assert len(verdicts) > 8 and {name for name, verdict in verdicts.items() if verdict != "right"} <= {
         "rotation_vector_rates_along"
     }
+
+
+def test_points_of_another_place_and_no_weight_don_t_move_an_alignment() -> None:
+    """With their weight they do."""
+    plugin = OWN["trimesh"]
+    if not plugin.version():
+        pytest.skip(needs_extra("trimesh", "trimesh"))
+    names = ("pose_aligned:weights of none", "pose_aligned:weights", "pose_aligned")
+    none, *others = answered(Job("trimesh", TURNS, names, SEED))
+    assert none.layout is not None and none.state is not None
+    want = expected("pose_aligned", TURNS, none.layout, none.state)
+    for one in (none, *others):
+        assert judge("trimesh", TURNS, one.function, np.asarray(one.value), want).verdict == "right"
+    way = plugin.ways[names[0]]  # type: ignore[attr-defined]
+    planted = replace(plugin, ways={names[0]: way._replace(code=way.code.replace("np.sign", "np.exp"))})  # type: ignore[type-var]
+    given = planted.build(TURNS).call(names[0], none.state)  # type: ignore[union-attr]
+    assert judge("planted", TURNS, names[0], np.asarray(given), want).verdict == "wrong"
 
 
 @pytest.mark.parametrize("name", [name for name in flexible.trees() if "implicit" not in name])

@@ -11,6 +11,10 @@ def _placements() -> dict[str, Function]:
     rows = {
         "pose_composed": ("X Y (12)", poses.composed),
         "pose_unset": ("a placement as it is before anybody sets it: zeros and rows of 1 (12)", poses.unset),
+        "pose_aligned": (
+            "X of points and their places under it, by least squares, however each counts (12)",
+            poses.aligned,
+        ),
         "pose_inverse": ("X^-1 (12)", poses.inverse),
         "pose_relative": ("X^-1 Y (12)", poses.relative),
         "pose_of_point": ("the point v of X, in the frame that X is in (3)", poses.placed),

@@ -48,7 +48,7 @@ FUNCTIONS |= functions_of(ATTITUDES | ORBITS | GUIDANCE | CONNECTORS, "turns") |
 # Of "turns", what depends on the rotations R and Q: the others have no part in `Tree.beside`.
 _OF_ROTATIONS = re.compile(
     "rotation_(matrix(?!_rate)|composed|angle|logarithm|inverse|halfway|difference|squared|to_rpy|vector_rates_along)"
-    "|pose_(composed|inverse|relative|logarithm|difference|halfway|squared)|quaternion_rates"
+    "|pose_(aligned|composed|inverse|relative|logarithm|difference|halfway|squared)|quaternion_rates"
 )
 _ACTED_ON = ("mass_matrix", "forward_dynamics", "forward_dynamics_dq", "forward_dynamics_dv", "potential_energy")
 _SENSED = ("joint_wrenches", "link_accelerations", "subtree_momenta")

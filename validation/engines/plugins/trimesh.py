@@ -1,10 +1,12 @@
-"""trimesh: mass properties of solids whose surfaces are triangles; no mechanics."""
+"""trimesh: mass properties of solids whose surfaces are triangles, rotations and placements; no mechanics."""
 
 from __future__ import annotations
 
 import numpy as np
 
 from ..interface import Array, Convention, Link, Tree, Unsupported
+from . import turns
+from .turns import trimesh as turning
 from .writing.source import Source, SourcePlugin, ways_of
 
 _SOLIDS = {
@@ -70,6 +72,8 @@ def _sizes(name: str, body: Link) -> dict[str, Array]:
 
 def write(tree: Tree) -> Source | Unsupported:
     """Text that makes a solid."""
+    if tree.asked == "turns":
+        return turns.source(*turning.IMPORTS)
     name = tree.name.removesuffix(_OF_A_DENSITY)
     if name not in _SOLIDS:
         return Unsupported("no such solid", offered=False)
@@ -98,9 +102,12 @@ PLUGIN = SourcePlugin(
     name="trimesh",
     package="trimesh",
     extra="trimesh",
-    conventions=(Convention("moments", "about the mass centre, along the axes of the file"),),
+    conventions=(
+        Convention("moments", "about the mass centre, along the axes of the file"),
+        Convention("quaternion", "w, x, y, z"),
+    ),
     kinds={},
-    ways=WAYS,
+    ways=WAYS | turning.WAYS,
     write=write,
-    demands={"solids": "box, Trimesh"},
+    demands={"solids": "box, Trimesh", "turns": "transformations, registration"},
 )

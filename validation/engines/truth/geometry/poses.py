@@ -35,6 +35,9 @@ from .turns import rotation_vector, speeds, turn, turned_by
 AWAY, ASIDE, BESIDE = (4.0, -8.0, 8.0), (8.0, 4.0, 4.0), (8.0, -4.0, 4.0)
 # A direction that is nearly -z.
 BACK = (0.0625, 0.03125, -1.0)
+# Points that are no plane's, and how much each counts where placements lead them to others.
+POINTS = ((0.0, 0.5, 0.25), (1.0, -0.5, 0.0), (0.25, 2.0, -1.0), (-1.5, 0.0, 0.5), (0.5, 0.25, 3.0))
+WEIGHTS = (1.0, 2.0, 0.5, 4.0, 3.0)
 # Mass, mass centre, moments about it of a body that is no tree's.
 MASS, CENTRE = 2.0, (0.25, -0.5, 0.125)
 MOMENTS = ((0.5, 0.0625, -0.03125), (0.0625, 0.375, 0.125), (-0.03125, 0.125, 0.625))
@@ -65,6 +68,11 @@ def composed(t: Truth, s: Point) -> Exact:
     """X Y (12)."""
     (R, p), (Q, r) = first(t, s), second(t, s)
     return flat(R @ Q, p + R @ r)
+
+
+def aligned(t: Truth, s: Point) -> Exact:
+    """X, which leads points to where they are under it (12)."""
+    return flat(*first(t, s))
 
 
 def unset(t: Truth, s: Point) -> Exact:
