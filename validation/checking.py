@@ -19,14 +19,7 @@ from .comparison.elements import judge_elements
 from .comparison.errors import NOBODY, Comparison, Scales, compute, judge, raised, scaled_errors, typical_scales
 from .comparison.loops import with_unique_multipliers
 from .comparison.motion import MOTIONS, FreeMotion, fall, judge_drift, smoothness_obstacle
-from .comparison.participants import (
-    EPS,
-    Factories,
-    Participant,
-    participants,
-    sum_of_energies,
-    worst_condition,
-)
+from .comparison.participants import EPS, Factories, Participant, participants, sum_of_energies, worst_condition
 from .comparison.regular import (
     JACOBIAN,
     RegularStates,
@@ -165,12 +158,7 @@ def absent(label: str, stage: str, error: BaseException) -> ModelResult | None:
 
 
 def check(subject: Subject, settings: Settings, factories: Factories | None = None) -> ModelResult:
-    """Compare our C of a subject with every engine.
-
-    Args:
-        subject: The model.
-        settings: States, seed, engines.
-        factories: Factories that take the place of the adapters' own, by engine.
+    """Compare our C of a subject with every engine; factories of engines, by name, take the place of the adapters' own.
 
     Raises:
         SymofrosError: Our own model can't be made.

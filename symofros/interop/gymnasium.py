@@ -63,9 +63,7 @@ class Task:
         largest, nu = np.asarray(self.largest, dtype=np.float64), self.model.nu
         if largest.shape != (nu,) or not (largest >= 0.0).all():
             found, rule = str(self.largest)[:60], f"({nu},), none negative"
-            raise rules.InteropError(
-                "task: bounds of inputs do not fit", found, rule, "give a largest magnitude for each input"
-            )
+            raise rules.InteropError("task: bounds of inputs do not fit", found, rule, "give one for each input")
         _check_count("task: no number of substeps", self.substeps, "substeps=1")
 
     def begin(self, rng: np.random.Generator) -> tuple[Array, Array, Array]:

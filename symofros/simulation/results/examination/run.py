@@ -210,18 +210,9 @@ class ExaminedRun(HeldRun):
             self.stepper.same_inputs_again = _gives_again(function, self.states)
         return self.stepper.same_inputs_again
 
-    def repeated(
-        self,
-        start: Sequence[Any],
-        t_end: float,
-        dt: float,
-        *,
-        every: int = 1,
-        method: Method | None = None,
-        **changes: Any,
-    ) -> tuple[int, list[Array]]:
+    def repeated(self, start: Sequence[Any], t_end: float, dt: float, **changes: Any) -> tuple[int, list[Array]]:
         """Status and states of a part of the run, made once more; arguments as of `made_again`."""
-        _, recorded = self.made_again(start, t_end, dt, every=every, method=method, **changes)
+        _, recorded = self.made_again(start, t_end, dt, **changes)
         return recorded.status, recorded.arrays()
 
     def made_again(

@@ -388,24 +388,3 @@ def test_the_order_is_that_of_two_halvings() -> None:
         patch.setattr(SwitchedRun, "error", _noting(lambda run, *_: run.order(), seen))
         sf.simulate(model, **given, method="semi_implicit_euler", dt=0.01)
     assert seen == [pytest.approx(1.0, abs=0.2)]
-
-
-@pytest.mark.parametrize(
-    ("share", "notes"),
-    [
-        (0.02, ["so near to zero that the steps cannot tell whether it gets there"]),
-        (0.7, ["over what its events do: half of that changes it"]),  # Half the step gets there.
-        (-0.5, []),
-        (-30.0, []),
-    ],
-)
-def test_events_that_turn_nearer_to_zero_than_steps_err_are_noted(share: float, notes: list[str]) -> None:
-    """Levels below the top of the right motion that no steps reach, and above it by more than their error."""
-    model, q, v, given = relay()
-    options: dict[str, Any] = {"method": "implicit_euler", "dt": 2e-4}
-    top, right = (sf.simulate(model, q, v, **(given | {"events": {}}), **one).q[:, 0].max() for one in (options, FINE))
-    given["events"] = {"up": sf.Event(f"q0 - {right - share * (right - top)}", "rising", action={"side": -3})}
-    run, known = (sf.simulate(model, q, v, **given, **one) for one in (options, FINE))
-    assert not run.events and len(known.events) == (share > 0.0)
-    assert len(run.outcome.notes) == len(notes), run.outcome
-    assert all(said in note for said, note in zip(notes, run.outcome.notes, strict=True)), run.outcome
