@@ -20,6 +20,8 @@ from symofros.base.annotations import kinds_of, refusal
 from symofros.base.annotations import shown as shown
 from symofros.errors import ArgumentError, did_you_mean
 
+# Kinds of parameters that collect arguments.
+_ONE_BY_ONE, _BY_NAME = inspect.Parameter.VAR_POSITIONAL, inspect.Parameter.VAR_KEYWORD
 _Parameters = ParamSpec("_Parameters")
 _Result = TypeVar("_Result")
 
@@ -31,7 +33,6 @@ def checked(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _
         ArgumentError: In each such call.
     """
     signature, title = inspect.signature(function), function.__qualname__.removesuffix(".__init__")
-    rest = {p.name for p in signature.parameters.values() if p.kind in (p.VAR_POSITIONAL, p.VAR_KEYWORD)}
     by_name = _Names(signature)
 
     @wraps(function)
@@ -42,9 +43,11 @@ def checked(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _
             kind is None or kind.allows(given[name]) for name, kind in kinds.items() if name in given
         ):
             for name, value in bound(title, signature, args, kwargs).items():
-                kind = None if name in rest else kinds.get(name)
-                if kind is not None and not kind.allows(value):
-                    raise refusal(f"{title}: {name}", value, kind)
+                kind, collects = kinds.get(name), signature.parameters[name].kind
+                values = value.values() if collects == _BY_NAME else value if collects == _ONE_BY_ONE else (value,)
+                for one in values:
+                    if kind is not None and not kind.allows(one):
+                        raise refusal(f"{title}: {name}", one, kind)
         return function(*args, **kwargs)
 
     return call

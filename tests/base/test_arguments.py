@@ -49,3 +49,12 @@ def test_a_call_with_options_by_name_is_not_refused_for_them() -> None:
             wrong()
         assert "'dt'" not in str(raised.value) and "self" not in str(raised.value)
         assert "it takes model, u, par, events, options, and options by name" in str(raised.value)
+
+
+def test_each_of_any_number_of_arguments_is_checked() -> None:
+    """They were taken as they came: a list of inputs failed at the first run, inside."""
+    diagram: Any = sf.Diagram("d")
+    with pytest.raises(sf.ArgumentError, match=r"add_inlet: targets is not a text\n  found:  list"):
+        diagram.add_inlet("goal", ["a.u", "b.u"])
+    with pytest.raises(sf.ArgumentError, match=r"add: inputs is not a text\n  found:  Gain"):
+        diagram.add(blocks.Gain(name="a"), u=blocks.Gain(name="c"))

@@ -184,6 +184,44 @@ def test_the_header_names_inputs_outputs_and_parameters(compiler: tuple[str, ...
     assert "| `effort` | 0 | 2 | N m |  |" in readme
 
 
+_TIMES = r"""
+#include <math.h>
+#include <stdio.h>
+#include <stdlib.h>
+#include <string.h>
+#include "inside.h"
+int main(void) {
+    const size_t size = sym_program_size(inside_program());
+    void *memory = malloc(size), *kept = malloc(size);
+    sym_program_instance *it = sym_program_init(memory, size, inside_program());
+    double last[2][INSIDE_OUTPUTS];
+    int k, turn;
+    it->inputs[INSIDE_IN_GOAL] = 0.7;
+    for (k = 0; k <= 10; ++k) (void)sym_program_advance(it, k / 1000.0);
+    memcpy(kept, memory, size);
+    for (turn = 0; turn < 2; ++turn, memcpy(memory, kept, size)) {
+        if (turn == 1) { /* refused, with nothing moved */
+            const double wrong[] = {0.009, -1.0, NAN, HUGE_VAL};
+            for (k = 0; k < 4; ++k) printf("%d ", (int)sym_program_advance(it, wrong[k]));
+            printf("%d ", (int)sym_program_advance(it, 0.01 - 1e-15));
+        }
+        for (k = 11; k <= 20; ++k) (void)sym_program_advance(it, k / 1000.0);
+        memcpy(last[turn], it->signals, sizeof last[turn]);
+    }
+    printf("%d\n", memcmp(last[0], last[1], sizeof last[0]));
+    free(memory), free(kept);
+    return 0;
+}
+"""
+
+
+def test_a_program_refuses_times_before_the_present_and_goes_on_from_copies_of_its_memory(tmp_path: Path) -> None:
+    folder = sf.export(inside(), "c", tmp_path, dt=1e-3).folder
+    (folder / "times.c").write_text(_TIMES)
+    build(folder, "times", *(name for name in cases.sources(folder) if name != "main.c"))
+    assert run(folder / "times", cwd=folder).split() == ["-1", "-1", "-1", "-1", "1", "0"]
+
+
 @pytest.mark.parametrize(
     ("inputs", "words"),
     [

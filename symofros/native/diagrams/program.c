@@ -223,6 +223,7 @@ static int32_t sym_program_integrate(sym_program_instance *instance, double t, i
     sym_diagram *d = &instance->diagram;
     int32_t i, status = SYM_FINISHED;
     d->before_end = before_end;
+    if (!(fabs(t) < HUGE_VAL) || t < *d->t - 1e-9 * d->base_numerator / d->base_denominator) return SYM_DIVERGED;
     if (sym_program_refused(instance) != NULL) return SYM_PARAMETERS_REFUSED;
     for (i = 0; i < instance->program->n_parts; ++i) {
         if (instance->program->n_inputs > 0) instance->parts[i]->run.slope_valid = 0; /* they may have changed */

@@ -6,8 +6,8 @@
  *     square->inputs[SQUARE_IN_GOAL] = 1.0;          // what enters holds until it is set anew
  *     status = sym_program_advance(square, 0.001);   // square->signals are those of that time
  *
- * After sym_program_init nothing allocates. Set square->par and call sym_program_prepare to change parameters. The header of
- * a program names the entries of its arrays.
+ * After sym_program_init nothing allocates; a copy of the memory, put back in its place, is the program as it was. Set
+ * square->par and call sym_program_prepare to change parameters. The header of a program names the entries of its arrays.
  */
 #ifndef SYMOFROS_PROGRAM_H
 #define SYMOFROS_PROGRAM_H
@@ -70,7 +70,8 @@ const char *sym_program_refused(const sym_program_instance *instance);
 /* Integrate to time t, executing instants on the way, that of t included: blocks sampled there read the inputs as they are
  * now, and sym_program_advance(instance, 0.0) executes those of the start. Steps end where formulas of time bend, jump or
  * change fast. Events of mechanisms act on the way; those of the call are the rows of the run of their part, as
- * sym_instance_advance has them. Returns SYM_FINISHED, SYM_TERMINAL_EVENT where one ends the motion, or a status below zero. */
+ * sym_instance_advance has them. Returns SYM_FINISHED, SYM_TERMINAL_EVENT where one ends the motion, or a status below zero:
+ * SYM_DIVERGED at once, with nothing moved, where t is before the present time or no number. */
 int32_t sym_program_advance(sym_program_instance *instance, double t);
 /* The same, but what is sampled at t waits for the next call, and `signals` are left: inputs that are set between
  * sym_program_approach(instance, t) and sym_program_advance(instance, t) are read by blocks sampled at t, and held from there
