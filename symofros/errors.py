@@ -114,7 +114,7 @@ def _gathered(by_kind: Sequence[Problem]) -> str:
     """The first of problems of one kind, with the number of the others and the first names among these."""
     first, others = by_kind[0], by_kind[1:]
     shown = ", ".join(map(_named, others[:_NAMED])) + (", …" if len(others) > _NAMED else "")
-    return str(replace(first, what=f"{first.what}; likewise {len(others)} more: {shown}"))
+    return str(replace(first, what=f"{first.what}; and {len(others)} more: {shown}"))
 
 
 def _named(problem: Problem) -> str:

@@ -1,4 +1,4 @@
-"""What frameworks that hold arrays are given of a model alike: dynamics, and motions along the manifold."""
+"""What every framework of arrays is given of a model: dynamics, and motions along the manifold."""
 
 from __future__ import annotations
 

@@ -1,4 +1,4 @@
-"""What Stepper and Steppers have alike as objects of Python: what is set, copied and pickled, and what is refused."""
+"""What Stepper and Steppers share as objects of Python: what is set, copied and pickled, and what is refused."""
 
 from __future__ import annotations
 

@@ -109,7 +109,7 @@ def test_equal_problems_are_one_line_with_their_number(tmp_path: Path) -> None:
         sf.load(kinematic(tmp_path, 24))
     text = str(caught.value)
     assert len(caught.value.problems) == 24 and text.count("moves no mass") == 1
-    assert "k.urdf:1: body 'l0': joint 'j0' moves no mass; likewise 23 more: 'l1' (line 2), 'l2' (line 3)" in text
+    assert "k.urdf:1: body 'l0': joint 'j0' moves no mass; and 23 more: 'l1' (line 2), 'l2' (line 3)" in text
     assert len(text.splitlines()) == 4
     assert invoke("info", tmp_path / "k.urdf").output.rstrip().endswith("k.urdf: 24 problems")
 

@@ -40,7 +40,7 @@ class KernelRow(Compared):
         spilled: Bytes stored and loaded because registers ran out.
         moved: Bytes of arrays that a state reads and writes.
         rate: States a second, with all arrays on the device; NaN without a graphics processor.
-        error: Largest difference from C, relative to the largest entry of a state's result; NaN likewise.
+        error: Largest difference from C, relative to the largest entry of a state's result; NaN without one.
     """
 
     model: str

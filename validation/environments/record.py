@@ -27,7 +27,7 @@ class Row(Labelled):
         function: Name of the function, as of our generated ones.
         states: States in a call.
         who: `OURS`, `NATIVE`, or the peer.
-        least: Least time over the turns [ns a state]; median: likewise.
+        least: Least time over the turns [ns a state]; median: their median.
         ratio: Median over the turns of this side's time over ours [1]; NaN where ours could not be raced.
         error: Largest difference from native C, relative to the largest entry of a state's result [1].
     """

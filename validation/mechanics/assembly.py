@@ -56,7 +56,7 @@ class Mover:
         X_AP: The joint's proximal frame in the parent's body frame.
         axis: Unit axis in P (3,); meaningless for ball and free joints.
         q: Slice of our coordinates; empty where the motion is prescribed.
-        v: Slice of our speeds, likewise.
+        v: Slice of our speeds.
         pitch: Pitch of a screw [m/rad].
         length: Length of a beam whose elastic coordinates it stands for; of a section before the tip, its station [m].
         is_rod: Whether it stands for strains of a geometrically exact rod.

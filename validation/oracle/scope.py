@@ -27,7 +27,7 @@ class Derived:
     """A model as SymPy derived it.
 
     Attributes:
-        q: Symbols of the coordinates, in order; likewise v of the speeds, u of the inputs.
+        q: Symbols of the coordinates, in order; v of the speeds, u of the inputs.
         symbols: name -> symbol of the parameters and of t.
         shorts: Symbol -> what it is short for, in inputs and the other symbols.
         quaternions: Indices in q at which quaternions start.

@@ -36,7 +36,7 @@ class Times(NamedTuple):
     """Nanoseconds a state.
 
     Attributes:
-        minimum: Over the repeats; median: likewise.
+        minimum: Over the repeats, as the median.
     """
 
     minimum: float

@@ -244,7 +244,7 @@ def _springs(joint: Joint, index: int, numbers: Numbers) -> tuple[float, float]:
 
 
 def _pushes(joint: Joint, index: int, numbers: Numbers) -> bool:
-    """Whether springs together push alike everywhere."""
+    """Whether the sum of springs pushes with the same force everywhere."""
     stiffness, pull = _springs(joint, index, numbers)
     return stiffness == 0.0 and pull != 0.0
 

@@ -79,7 +79,7 @@ class Loop:
 
     @cached_property
     def reads(self) -> list[int]:
-        """Keys of variables that all iterations mention alike."""
+        """Keys of variables that are the same in all iterations."""
         return [variables[0] for variables in self._variables if self.is_common(variables)]
 
     @cached_property

@@ -100,7 +100,7 @@ class CoordinateMap:
     """Index map: names to indices of q, v, u, par.
 
     Attributes:
-        q: Coordinate names, in order; likewise the speeds v, the inputs u and the run-time parameters par.
+        q: Names of the coordinates, in order; v of the speeds, u of the inputs, par of the run-time parameters.
         efforts: Number of inputs that are forces; the rest prescribe motion.
         par_default: Values of the run-time parameters.
         constants: Values of the constant parameters, by name.

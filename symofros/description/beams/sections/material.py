@@ -7,7 +7,7 @@ from dataclasses import dataclass, fields
 
 from symofros.description.entries import refuses_unknown_entries
 from symofros.description.values import Value, as_value
-from symofros.errors import DescriptionError, Problem
+from symofros.errors import DescriptionError
 from symofros.expr.expression import Expression
 
 # E/G where Poisson's ratio is 1/2; beyond by rounding counts as there.
@@ -37,32 +37,30 @@ class Material:
         E, G = self.E, self.G
         if isinstance(E, float) and isinstance(G, float) and E / G > _LARGEST_RATIO:
             raise DescriptionError(
-                Problem(
-                    "material: E and G are those of no isotropic material",
-                    f"E = {E:g}, G = {G:g}: Poisson's ratio E/2G - 1 is {E / (2.0 * G) - 1.0:.3g}",
-                    "Poisson's ratio is at most 1/2",
-                    "mend a modulus; of a material with a grain, state EI_y, EI_z, GJ of the beam",
-                )
+                "material: E and G are those of no isotropic material",
+                f"E = {E:g}, G = {G:g}: Poisson's ratio E/2G - 1 is {E / (2.0 * G) - 1.0:.3g}",
+                "Poisson's ratio is at most 1/2",
+                "mend a modulus; of a material with a grain, state EI_y, EI_z, GJ of the beam",
             )
 
 
-def refuse_sizes(what: str, sizes: Mapping[str, Value], room: tuple[str, float] | None = None) -> None:
+def refuse_sizes(what: str, sizes: Mapping[str, Value], bound: tuple[str, float] | None = None) -> None:
     """Refuse numbers that are not positive; formulas are judged by what follows from them.
 
     Args:
         what: What has them, for the error.
         sizes: Numbers or formulas, by name.
-        room: Name of a thickness, and the largest that it may be.
+        bound: Name of a thickness, and the largest that it may be.
 
     Raises:
-        DescriptionError: One is zero or negative, or the thickness is more than there is room for.
+        DescriptionError: One is zero or negative, or the thickness is above its bound.
     """
     for name, size in sizes.items():
         if not isinstance(size, Expression) and not size > 0.0:
-            raise DescriptionError(Problem(f"{what}: {name} = {size:g}", f"{size:g}", f"{name} is positive", "mend it"))
-    if room is not None:
-        name, most = room
+            raise DescriptionError(f"{what}: {name} = {size:g}", f"{size:g}", f"{name} is positive", "mend it")
+    if bound is not None:
+        name, most = bound
         thickness = sizes[name]
         if not isinstance(thickness, Expression) and thickness > most:
             rule = f"{name} is at most {most:g}, which fills the section"
-            raise DescriptionError(Problem(f"{what}: {name} = {thickness:g}", f"{thickness:g}", rule, "mend a size"))
+            raise DescriptionError(f"{what}: {name} = {thickness:g}", f"{thickness:g}", rule, "mend a size")
