@@ -39,7 +39,7 @@ from symofros.generator.record import GENERATOR as GENERATOR
 from symofros.generator.record import model_record
 from symofros.generator.units import UnitCompiler
 from symofros.mechanics.dynamics.functions import Request
-from symofros.mechanics.topology.beams import omitted_rotary_inertia, omitted_shear
+from symofros.mechanics.topology.beams import omitted_rotary_inertia, omitted_shear, polar_mismatch
 from symofros.mechanics.topology.events import tree_with_events
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.remarks import rotation_remarks
@@ -292,7 +292,7 @@ class Compilation:
 
 
 def inconsistencies(system: System) -> Iterator[str]:
-    """Warnings about beams: rotary inertia and shear that do not count, and softening by spin without stiffening."""
+    """Warnings about beams: moments of no section, rotary inertia and shear that do not count, softening by spin."""
     beams = system.beams
     if not beams:
         return
@@ -302,6 +302,12 @@ def inconsistencies(system: System) -> Iterator[str]:
             yield (
                 f"beam '{body.name}': {label} is stated and does not count, as rotary_inertia is false: it would lower"
                 f" the frequency of bending mode {mode} by {share:.1%}. Set rotary_inertia: true, or state no {label}."
+            )
+        mismatch = polar_mismatch(body, numbers)
+        if mismatch is not None:
+            yield (
+                f"beam '{body.name}': rhoJ = {mismatch[0]:.4g}, but rhoI_y + rhoI_z = {mismatch[1]:.4g} kg m: the polar"
+                " moment of a section is their sum. Mend the one that is wrong, such as one in another unit."
             )
         for plane, mode, share, more in omitted_shear(body, numbers):
             yield (

@@ -11,6 +11,8 @@ import numpy as np
 from symofros.runtime.calls.kernel import Array
 
 _SHORTENING = "state retain: first_order or all, with foreshortening"
+# Share of the largest singular value from which a direction counts.
+_INDEPENDENT = 1e-9
 # Place of the bending moment of each plane among section forces.
 _MOMENTS = {"y": 5, "z": 4}
 
@@ -69,6 +71,7 @@ class BentBeam(NamedTuple):
         angles: Yaw, pitch and twist there per coordinate (s, n).
         counts: Number of coordinates of bend_y, bend_z and twist.
         stiffness: Elastic stiffness (n, n).
+        free: Changes of the coordinates that constraints leave (n, k), where there are some.
     """
 
     length: float
@@ -76,6 +79,7 @@ class BentBeam(NamedTuple):
     angles: Array
     counts: Sequence[int]
     stiffness: Array
+    free: Array | None
 
     @property
     def blocks(self) -> Iterator[slice]:
@@ -115,18 +119,34 @@ class BentBeam(NamedTuple):
 
     def change(self, added: Array) -> float:
         """How much stiffer a direction becomes at most, relative; -1 where no stiffness is left (26i)."""
+        blocks, stiffness = list(self.blocks), self.stiffness
+        if self.free is not None:
+            parts = [_range(self.free[block]) for block in blocks]
+            basis = np.zeros((len(stiffness), sum(part.shape[1] for part in parts)))
+            ends = np.cumsum([part.shape[1] for part in parts])
+            places = [slice(int(end) - part.shape[1], int(end)) for end, part in zip(ends, parts, strict=True)]
+            for block, place, part in zip(blocks, places, parts, strict=True):
+                basis[block, place] = part
+            blocks, stiffness, added = places, basis.T @ stiffness @ basis, basis.T @ added @ basis
+        if not len(stiffness) or not np.isfinite(added).all():
+            return 0.0
         try:
-            factor = np.linalg.cholesky(self.stiffness)
-            inverse = np.linalg.inv(factor)
-            loaded = np.eye(len(added)) + inverse @ added @ inverse.T
-            if not np.isfinite(loaded).all() or np.linalg.eigvalsh(loaded)[0] <= 0.0:
-                return -1.0 if np.isfinite(loaded).all() else 0.0
+            inverse = np.linalg.inv(np.linalg.cholesky(stiffness))
         except np.linalg.LinAlgError:  # A direction without elastic stiffness.
             return 0.0
+        loaded = np.eye(len(added)) + inverse @ added @ inverse.T
+        if np.linalg.eigvalsh(loaded)[0] <= 0.0:
+            return -1.0
         compliance = np.linalg.inv(loaded)
         # The elastic stiffness does not couple directions, so that its factor has blocks as well.
-        changes = [1.0 / np.linalg.eigvalsh(compliance[block, block]) - 1.0 for block in self.blocks]
+        changes = [1.0 / np.linalg.eigvalsh(compliance[block, block]) - 1.0 for block in blocks]
         return float(max(np.concatenate(changes), key=abs))
+
+
+def _range(columns: Array) -> Array:
+    """Orthonormal basis of what columns span."""
+    basis, sizes, _ = np.linalg.svd(columns, full_matrices=False)
+    return np.asarray(basis[:, sizes > _INDEPENDENT * sizes.max(initial=0.0)])
 
 
 def left_out(

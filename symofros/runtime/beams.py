@@ -232,18 +232,21 @@ class ElasticBeam:
             error += contrast * twist * slope / (slope + twist)
         return error
 
-    def left_out(self, elastic: Array, stations: Array, forces: Array) -> tuple[LeftOut, ...]:
+    def left_out(
+        self, elastic: Array, stations: Array, forces: Array, free: Array | None = None
+    ) -> tuple[LeftOut, ...]:
         """What is worth a note of the stiffness that the order leaves out.
 
         Args:
             elastic: Elastic coordinates (n).
             stations: Stations x/L of the section forces (s); none where they are not known.
             forces: Section forces (s, 6).
+            free: Changes of the elastic coordinates that constraints leave (n, k), where there are some.
         """
         if self.omitted is None:
             return ()
         angles = self.angles * self.scale
-        beam = BentBeam(self.length, self.xi, angles, self.counts, self.elastic_stiffness())
+        beam = BentBeam(self.length, self.xi, angles, self.counts, self.elastic_stiffness(), free)
         parts = left_out(self.omitted, beam, elastic, stations, forces)
         return tuple(part for part in parts if abs(part.change) > NOTED_ERROR)
 

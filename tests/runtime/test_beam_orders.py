@@ -74,6 +74,19 @@ def test_columns_soften_by_what_is_said(share: float, segments: int) -> None:
     assert any("leaves out what axial forces" in note and words in note for note in rest.notes)
 
 
+@pytest.mark.parametrize(("sides", "turns", "first"), [(("z",), (), 4.493409), (("z",), ("y",), 2.0 * math.pi)])
+def test_a_loop_that_holds_the_tip_of_a_column_counts(sides: Any, turns: Any, first: float) -> None:
+    """The tip slides along the axis, turns or not: Euler's other loads, (first/L)^2 EI."""
+    load = sf.BeamLoad((-0.5 * first**2 * EI / L**2, 0.0, 0.0), at=1.0, axes="world")
+    clamp = sf.Joint("clamp")
+    beam = sf.Beam("b", clamp, L, MASS, EI_y=EI, bend_z=5, retain="zeroth_order", loads=(load,))
+    wall = sf.RigidBody("wall", sf.Joint("fixed", position=(L, 0.0, 0.0)), sf.Inertia(1.0))
+    held = sf.Closure("held", ("wall", None), ("b", "tip"), sides, turns)
+    model = sf.compile(sf.System("s", (beam, wall), gravity=(0.0, 0.0, 0.0), constraints=(held,)))
+    assert changes(sf.equilibrium(model).bendings) == pytest.approx([-0.5], rel=0.02)
+    assert changes(sf.modes(model, model.neutral()).bendings) == pytest.approx([-0.5], rel=0.02)
+
+
 def test_runs_batches_diagrams_and_efforts_say_it_too() -> None:
     described = column(0.5, "zeroth_order")
     model = sf.compile(described)

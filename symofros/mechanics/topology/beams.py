@@ -30,6 +30,8 @@ _POINTS = (16, 24)
 INTERPOLATION_TOLERANCE = 1e-3
 # Relative drop of a frequency by rotary inertia or shear that is left out, up to which nothing is said.
 MAX_FREQUENCY_DROP = 0.01
+# Relative difference between rhoJ and rhoI_y + rhoI_z up to which nothing is said.
+MAX_POLAR_MISMATCH = 0.01
 # EI rhoA/(GA rhoI) where GA is not stated: E/G over the shear factor, 2.4 to 3.6 of full isotropic sections.
 ISOTROPIC_SHEAR = 3.0
 # Stations x/L at which section properties are looked at.
@@ -107,6 +109,15 @@ def omitted_shear(beam: Beam, numbers: Numbers) -> Iterator[tuple[str, int, floa
         share = _frequency_drop(mode, ratio)
         if share > MAX_FREQUENCY_DROP:
             yield plane, mode, share, 3.0 * ratio
+
+
+def polar_mismatch(beam: Beam, numbers: Numbers) -> tuple[float, float] | None:
+    """rhoJ, and rhoI_y + rhoI_z, which it is of any section, where all are stated and differ at mid-length."""
+    stated = beam.rhoJ, beam.rhoI_y, beam.rhoI_z
+    if 0.0 in stated:
+        return None
+    polar, *others = (_at_middle(beam, value, numbers) for value in stated)
+    return (polar, sum(others)) if abs(polar - sum(others)) > MAX_POLAR_MISMATCH * sum(others) else None
 
 
 # Axis about which bending in a plane turns sections.

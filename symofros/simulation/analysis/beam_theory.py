@@ -5,7 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import replace
-from typing import NamedTuple
+from typing import Any, NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -137,12 +137,31 @@ def with_left_out(
             loaded = [_UNKNOWN] * len(beams)
     else:
         loaded = [_UNKNOWN] * len(beams)
+    free = _constrained_directions(model, (t[-1], q[-1], v[-1], u[-1]), par) if model.nc else None
     return tuple(
-        replace(bending, left_out=beam.left_out(q[:, beam.in_q].mean(axis=0), *known))
+        replace(
+            bending,
+            left_out=beam.left_out(
+                q[:, beam.in_q].mean(axis=0), *known, free=None if free is None else free[beam.in_v]
+            ),
+        )
         for beam, bending, known in zip(beams, bendings, loaded, strict=True)
     )
 
 
+def _constrained_directions(model: Model, state: Sequence[Any], par: ArrayLike | None) -> Array | None:
+    """Changes of the speeds that the constraints leave in a state t, q, v, u (nv, k); None where that is not known."""
+    t, q, v, u = state
+    try:
+        (G,) = model.evaluate("constraint_jacobian", q=q, v=v, u=u, t=t, par=par)
+    except SymofrosError:  # Options.functions left it out.
+        return None
+    _, sizes, rows = np.linalg.svd(np.asarray(G))
+    return np.asarray(rows[int((sizes > _RANK * sizes.max(initial=0.0)).sum()) :].T)
+
+
+# Share of the largest singular value of G up to which a condition repeats others.
+_RANK = 1e-9
 # Stations and section forces that are not known.
 _UNKNOWN = np.zeros(0), np.zeros((0, 6))
 

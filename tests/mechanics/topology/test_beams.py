@@ -123,6 +123,15 @@ def test_shear_that_is_left_out_is_said(depth: float, theory: Any) -> None:
         assert added == pytest.approx(tips[0] / tips[1] - 1.0, rel=0.12)
 
 
+@pytest.mark.parametrize(("polar", "said"), [("3e-4", 0), (3.01e-4, 0), (3e-7, 1), ("6e-4*(1 - x/4)", 1)])
+def test_a_polar_moment_that_is_no_sum_is_said(polar: Any, said: int) -> None:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", sf.InconsistentModelWarning)
+        stated = beam(rhoJ=polar, rhoI_y=1e-4, rhoI_z=2e-4, rotary_inertia=True)
+        sf.compile(sf.System("s", [stated]), sf.Options(backend="interpreter"))
+    assert sum("the polar moment of a section is their sum" in str(one.message) for one in caught) == said
+
+
 def test_a_single_clamped_beam_is_a_mechanism() -> None:
     model = sf.compile(sf.System("s", [beam()]), sf.Options(functions=("mass_matrix",)))
     assert model.names.q == ("b.bend_y[0]", "b.bend_y[1]") and "tip" in model.names.frames
