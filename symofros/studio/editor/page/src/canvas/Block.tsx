@@ -9,6 +9,7 @@ import { frames, hasJoint, jointHeight, portHeight, size } from "../model/geomet
 import type { Summary } from "../model/summary";
 import { Glyph } from "../shell/Glyph";
 import { reveal, toggleFolds } from "../store/folding";
+import { useBegun } from "../store/store";
 import { usePorts } from "./usePorts";
 
 export type BlockNode = Node<
@@ -68,12 +69,13 @@ function Theory({ bent }: { bent: BentBeam | null }) {
 function Outline({ data, note, children }: { data: Props; note: string; children: ReactNode }) {
   const { node } = data;
   const [width, height] = size(node);
+  const problems = useBegun() ? node.problems : 0;
   return (
-    <div className={`block ${node.kind}${node.problems > 0 ? " wrong" : ""}`} style={{ width, height }}>
+    <div className={`block ${node.kind}${problems > 0 ? " wrong" : ""}`} style={{ width, height }}>
       <div className="block-head">
         <Glyph name={node.kind} size={14} />
         <span className="block-title">{node.title}</span>
-        {node.problems > 0 ? <span className="block-problems">{node.problems}</span> : null}
+        {problems > 0 ? <span className="block-problems">{problems}</span> : null}
         <Theory bent={data.bent} />
         <span className="block-note">{note}</span>
         {data.carried > 0 ? <Fold {...data} /> : null}

@@ -1,4 +1,4 @@
-import { useReactFlow, useStoreApi } from "@xyflow/react";
+import { type Rect, useReactFlow, useStoreApi } from "@xyflow/react";
 import { useEffect, useRef } from "react";
 
 import type { Point } from "../api/types";
@@ -6,6 +6,10 @@ import { lanes } from "../model/geometry";
 import { now, useStore } from "../store/store";
 
 const MARGIN = 20;
+// Beside the whole diagram, for ties that swing out [px].
+const LANE = 68;
+// The least zoom at which words are read.
+const LEGIBLE = 0.5;
 /** Where a block stands, and how large it is. */
 export interface Extent {
   place: Point;
@@ -37,6 +41,10 @@ export function useWholeView(path: string): void {
   }, [flow, path, hasResults]);
 }
 
+/** Whether all blocks can be read side by side in a room of this size. */
+const fits = (all: Rect, width: number, height: number): boolean =>
+  all.width * LEGIBLE + 2 * LANE <= width && all.height * LEGIBLE + 2 * LANE <= height;
+
 /** Moves the diagram, if it must, so that what was asked for is seen. */
 export function useSight(extent: (id: string) => Extent | undefined, places: Record<string, Point>): void {
   const sight = useStore((state) => state.sight);
@@ -54,11 +62,15 @@ export function useSight(extent: (id: string) => Extent | undefined, places: Rec
     const isInside = (from: number, extent: number, room: number): boolean =>
       from >= MARGIN && from + extent <= room - MARGIN;
     if (
-      zoom >= 0.5 &&
+      zoom >= LEGIBLE &&
       isInside(place[0] * zoom + x, w * zoom, width) &&
       isInside(place[1] * zoom + y, h * zoom, height)
     )
       return;
+    if (fits(flow.getNodesBounds(flow.getNodes()), width, height)) {
+      void flow.fitView({ ...whole(), duration: pace() });
+      return;
+    }
     void flow.setCenter(place[0] + w / 2, place[1] + h / 2, {
       zoom: Math.min(1, Math.max(0.7, zoom)),
       duration: pace(),

@@ -76,7 +76,7 @@ export function Palette() {
           help="A formula of coordinates that stays zero, such as q2 - 3*q1: a gear, a belt. In the window of the system."
           word=""
           draggable={false}
-          onAdd={() => show({ kind: "properties", path: ["system"] })}
+          onAdd={() => show({ kind: "properties", path: ["system"], entry: ["couplings"] })}
         />
       </Group>
       <Group title="Numbers" items={of(NUMBERS)} />

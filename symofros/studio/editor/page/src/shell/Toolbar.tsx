@@ -8,7 +8,7 @@ import { toRedo, toUndo } from "../model/moves";
 import { tidyDiagram } from "../model/diagram_layout";
 import { tidy } from "../model/layout";
 import { showAnalysis, showSimulation } from "../store/asked";
-import { copy, paste } from "../store/clipboard";
+import { copy, cut, duplicate, paste } from "../store/clipboard";
 import { moveBlocks, redo, undo } from "../store/edits";
 import { remove } from "../store/elements";
 import { browse, browseExamples, leave, save } from "../store/files";
@@ -49,8 +49,10 @@ function EditMenu() {
     <Menu
       title="Edit"
       items={[
+        { title: "Cut", keys: "Ctrl X", act: cut },
         { title: "Copy", keys: "Ctrl C", act: copy },
         { title: "Paste", keys: "Ctrl V", act: () => void paste() },
+        { title: "Duplicate", keys: "Ctrl D", act: () => void duplicate() },
         { title: "Remove", keys: "Delete", act: () => void remove(now().selected) },
         { title: "Find…", keys: "Ctrl K", act: () => show({ kind: "search" }) },
         ...(isDiagram

@@ -22,7 +22,10 @@ export function Window({ title, children, foot, onClose, onSubmit, wide = false 
     const element = dialog.current;
     element?.showModal();
     // The browser would choose the button that closes it.
-    const first = element?.querySelector<HTMLElement>(".window-body :is(input, select, textarea, button)");
+    const field = ":is(input, select, textarea, button)";
+    const first =
+      element?.querySelector<HTMLElement>(`[data-first] ${field}`) ??
+      element?.querySelector<HTMLElement>(`.window-body ${field}`);
     first?.focus();
     if (first instanceof HTMLInputElement) first.select();
     return () => element?.close();

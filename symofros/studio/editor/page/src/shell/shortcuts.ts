@@ -2,7 +2,7 @@
 
 import { openProperties } from "../canvas/open";
 import { remove } from "../store/elements";
-import { copy, duplicate, paste } from "../store/clipboard";
+import { copy, cut, duplicate, paste } from "../store/clipboard";
 import { redo, undo } from "../store/edits";
 import { browse, leave, save } from "../store/files";
 import { toggleFolds } from "../store/folding";
@@ -28,10 +28,7 @@ const WITH_CONTROL: Record<string, () => void> = {
   o: () => void browse(),
   k: () => show({ kind: "search" }),
   c: copy,
-  x: () => {
-    copy();
-    void remove(now().selected);
-  },
+  x: cut,
   v: () => void paste(),
   d: () => void duplicate(),
   g: () => void group(now().selected),

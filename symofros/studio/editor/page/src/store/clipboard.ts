@@ -9,6 +9,7 @@ import { isMap } from "../model/paths";
 import type { Places } from "../model/places";
 import { carrier } from "./bodies";
 import { change, editInTurn, place } from "./edits";
+import { remove } from "./elements";
 import { ordered } from "./requests";
 import { notify, now, update } from "./store";
 
@@ -42,6 +43,11 @@ export function copy(): void {
   [copied, pasted] = [given, 0];
   const text = JSON.stringify({ [KEYS[given.kind]]: given.part }, null, 1);
   void navigator.clipboard?.writeText(text).catch(() => undefined);
+}
+
+export function cut(): void {
+  copy();
+  void remove(now().selected);
 }
 
 /** Puts a copy of what is chosen beside it; what was copied before stays in the clipboard. */

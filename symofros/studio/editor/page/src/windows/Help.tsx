@@ -69,7 +69,7 @@ function Record({ root, name }: { root: JsonMap; name: string }) {
         {fields.map(({ key, described }) => (
           <div key={key}>
             <dt>
-              {label(key, name)} <code>{key}</code>
+              {label(key, name) === key ? null : label(key, name)} <code>{key}</code>
             </dt>
             <dd>{described}</dd>
           </div>

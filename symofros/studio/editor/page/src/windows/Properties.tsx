@@ -136,7 +136,7 @@ export function Properties({ path, entry }: { path: Path; entry: Path }) {
             onChange={(text) => rename(path, text)}
           />
         )}
-        {isSystem ? <SystemForm value={draft} onChange={setDraft} /> : null}
+        {isSystem ? <SystemForm value={draft} onChange={setDraft} entry={entry} /> : null}
         {section === "bodies" ? <BodyForm value={draft} onChange={setDraft} path={path} entry={entry} /> : null}
         {isGround ? <GravityForm value={aside} onChange={setAside} /> : null}
         {diagram === null ? null : <DiagramForm value={draft} onChange={setDraft} path={path} />}

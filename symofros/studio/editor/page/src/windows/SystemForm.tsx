@@ -77,8 +77,8 @@ function chosen(described: Field, key: string, value: Json | undefined): Field {
   return { ...described, shape: { ...described.shape, keys } };
 }
 
-/** Gravity and name; what concerns several bodies; files that are included. */
-export function SystemForm({ value, onChange }: Props) {
+/** Gravity and name; what concerns several bodies; files that are included. It opens at the section of `entry`. */
+export function SystemForm({ value, onChange, entry }: Props & { entry: Path }) {
   const { root } = useForm();
   const { shape } = definition(root, "SystemEntry");
   const properties = mapAt(root, ["properties"]);
@@ -93,7 +93,7 @@ export function SystemForm({ value, onChange }: Props) {
         />
       ) : null}
       {SECTIONS.map(({ key, title, help }) => (
-        <section key={key}>
+        <section key={key} data-first={key === entry[0] || undefined}>
           <h3>{title}</h3>
           <p className="quiet">{help}</p>
           <FieldControl
