@@ -106,4 +106,6 @@ def _effort(data: Data) -> Section:
 
 # What writes it at the everyday size.
 _ARGUMENTS = "campaign run --models all --report reports -o campaign"
-TOPIC = Topic("campaign", "Correctness", "And over a hundred thousand states?", compose, arguments=_ARGUMENTS)
+TOPIC = Topic(
+    "campaign", "Correctness", "Do engines agree at a hundred thousand states?", compose, arguments=_ARGUMENTS
+)

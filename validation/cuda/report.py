@@ -319,5 +319,5 @@ def _paint(record: Record, shown: list[KernelRow], functions: list[str], axes: A
     logarithmic(axes.xaxis)
 
 
-_QUESTION = "Right and fast on a graphics processor?"
+_QUESTION = "Is it right and fast on a graphics processor?"
 TOPIC = Topic("cuda", "Speed", _QUESTION, compose, measure)

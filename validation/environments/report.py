@@ -254,5 +254,5 @@ def _paint(shown: list[dict[str, Row]], sides: list[str], axes: Any) -> None:
     logarithmic(axes.xaxis)
 
 
-_QUESTION = "Same and fast in JAX, PyTorch, CasADi, a page?"
+_QUESTION = "Does it give the same numbers, and fast, in JAX, PyTorch, CasADi and web pages?"
 TOPIC = Topic("environments", "Speed", _QUESTION, compose, measure)

@@ -227,4 +227,4 @@ def compose(data: Data) -> Report:
     )
 
 
-TOPIC = Topic("exports", "Speed", "What does a call cost, from where?", compose, measure)
+TOPIC = Topic("exports", "Speed", "What does a call cost from C, Python, MEX, an FMU?", compose, measure)
