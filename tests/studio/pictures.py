@@ -11,7 +11,7 @@ import numpy as np
 from tests.studio.waiting import PATIENCE, at_rest, until
 
 if TYPE_CHECKING:
-    from playwright.sync_api import Page
+    from playwright.sync_api import FrameLocator, Page
 
 # Of 255: what antialiasing does stays below it.
 SEEN = 40
@@ -20,11 +20,17 @@ FEW, MANY = 20, 300
 _HIDDEN = "<style>.mantine-Notifications-root, .mantine-Notification-root {display: none !important}</style>"
 
 
-def shot(page: Page) -> np.ndarray:
-    """Picture of the canvas, the page's own or the 3-D pane's, without overlays (height, width, 3)."""
+def without_overlays(page: Page) -> Page | FrameLocator:
+    """What has the canvas, the page or its 3-D pane, from which notices over the picture are gone."""
     framed = page.locator("iframe.view").count() > 0
     inside = page.frame_locator("iframe.view") if framed else page
     inside.locator("body").evaluate("(body, style) => body.insertAdjacentHTML('beforeend', style)", _HIDDEN)
+    return inside
+
+
+def shot(page: Page) -> np.ndarray:
+    """Picture of the canvas, the page's own or the 3-D pane's, without overlays (height, width, 3)."""
+    inside = without_overlays(page)
     canvas = inside.locator("canvas").first
     # A picture of the element waits until its page's animations let it through, for which a busy machine has no time.
     data = page.screenshot(clip=canvas.bounding_box() or at_rest(canvas), timeout=1000 * PATIENCE)

@@ -19,6 +19,7 @@ from playwright.sync_api import Browser, Page
 import symofros.studio.editor
 from tests.studio.editor.browser import steps
 from tests.studio.editor.browser.measures import noted
+from tests.studio.pictures import without_overlays
 
 TOKEN = "token-of-the-tests"
 # The oldest that builds the page.
@@ -214,6 +215,8 @@ def picture(page: Page) -> Picture:
 
     def shoot(name: str) -> None:
         if PICTURES:
+            if page.locator("iframe.view").count() > 0:
+                without_overlays(page)
             page.wait_for_timeout(300)  # Movements of the diagram come to rest.
             file = Path(PICTURES) / f"editor-{name}.png"
             page.screenshot(path=file)
