@@ -11,6 +11,7 @@ from typing import Any
 
 from ruamel.yaml import YAML
 
+from ..models.covering.edits import parts
 from ..verdicts import RED, Cell
 from .corrections import CORRECTIONS
 
@@ -69,7 +70,7 @@ class Cause:
             cell.engine == self.engine
             and cell.verdict in self.verdicts
             and _any(self.functions, cell.function)
-            and _any(self.trees, cell.model)
+            and any(_any(self.trees, name) for name in parts(cell.model))
             and re.search(self.words, cell.words) is not None
         )
 

@@ -94,7 +94,9 @@ value = [[*x.translational(), *x.rotational()] for x in products]
 == link_jacobians | CalcJacobianSpatialVelocity | {Q}{_FRAMES}{_JACOBIANS.format(about="W")}
 == jacobian_local | CalcJacobianSpatialVelocity | {Q}{_FRAMES}{_JACOBIANS.format(about="f")}
 == joint_dampings | default_damping_vector
-value = np.concatenate([p.get_joint(j).default_damping_vector() for j in p.GetJointIndices()])
+value = np.zeros(p.num_velocities())
+for j in map(p.get_joint, p.GetJointIndices()):
+    value[j.velocity_start():][:j.num_velocities()] = j.default_damping_vector()
 == mass_centre | CalcCenterOfMassPositionInWorld | {Q}value = p.CalcCenterOfMassPositionInWorld(c)
 == mass_centre_jacobian | CalcJacobianCenterOfMassTranslationalVelocity
 {Q}{_KV}value = p.CalcJacobianCenterOfMassTranslationalVelocity(c, kV, W, W)

@@ -11,6 +11,8 @@ from ...interface import Joint, Tree, Unsupported
 from ...plugins import mujoco
 from ...plugins.writing import sdf as sdf_writer
 from ...plugins.writing import urdf as urdf_writer
+from ..covering import mjcf_files, sdf_files, urdf_files, usd_files
+from ..covering.edits import parts
 from ..hostile import trees as hostile_trees
 from ..kinds import OBLIQUE, link, placed
 from . import coupled, drake, mjcf, mjcf_geoms, mjcf_joints, mjcf_lines, mjcf_scopes, sdf, skel, urdf, usd, usd_masses
@@ -23,7 +25,7 @@ _WIDE = '<limit lower="-100" upper="100" effort="1e9" velocity="1e9"/>'
 # Of mimic joints two are: who fails there ends a process for each function.
 _LONG = re.compile(
     "mjcf: .*(euler|angle|axes|zaxis|in full|turned by|box fitted to|geom (box|ell|cyl|cap)|"
-    "frame (around|within)|site (turned|from|by|of)|range.*(left out|degrees))|urdf: mimic( |,)(?!with).*"
+    "frames? (around|within)|site (turned|from|by|of)|range.*(left out|degrees))|urdf: mimic( |,)(?!with).*"
 )
 
 
@@ -58,12 +60,13 @@ def formats() -> dict[str, Reading]:
         for form, text in texts(tree).items():
             name = f"{form} of {tree.name}"
             made[name] = Reading(form, text, Tree(name, tree.links, tree.gravity))
-    urdf_stated, mjcf_stated = urdf.files(), mjcf.files() | mjcf_geoms.files() | mjcf_joints.files()
-    mjcf_stated |= mjcf_lines.files()
-    written = [one for name, one in (urdf_stated | mjcf_stated).items() if not _LONG.search(name)]
-    read = mjcf_scopes.files() | sdf.files() | usd.files() | usd_masses.files() | coupled.files()
-    read |= drake.files() | skel.files()
-    return urdf_stated | mjcf_stated | read | made | dict(map(_written, written))
+    urdf_stated, mjcf_stated = urdf_files.files() | urdf.files(), mjcf_files.files() | mjcf.files()
+    mjcf_stated |= mjcf_geoms.files() | mjcf_joints.files() | mjcf_lines.files()
+    stated = urdf_stated | mjcf_stated
+    written = [one for name, one in stated.items() if not any(map(_LONG.search, parts(name)))]
+    read = mjcf_scopes.files() | sdf_files.files() | sdf.files() | usd_files.files() | usd.files()
+    read |= usd_masses.files() | coupled.files() | drake.files() | skel.files()
+    return stated | read | made | dict(map(_written, written))
 
 
 def _written(one: Reading) -> tuple[str, Reading]:

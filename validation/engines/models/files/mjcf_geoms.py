@@ -12,7 +12,7 @@ import numpy as np
 from ...interface import ORIGIN, Array, Link, rows, vector
 from . import readers
 from .mjcf import FIRST, JOINT_B, RADIAN, dense, file, solid_of
-from .readers import BODY, NEXT, Reading, about, diagonal, in_series
+from .readers import NEXT, Reading, diagonal
 
 _of = partial(readers.reading, "mjcf")
 
@@ -121,42 +121,19 @@ def _geoms() -> Iterator[tuple[str, Reading]]:
         return _of(name, file(b=JOINT_B + geoms, head=head), FIRST, link)
 
     ball = dense(solid_of("ellipsoid", 0.1, 0.1, 0.1))
-    yield second("geom, all left out", '<geom size="0.1"/>', ball)
-    yield second(
-        "geom by density", '<geom size="0.1" density="700"/>', dense(solid_of("ellipsoid", 0.1, 0.1, 0.1), 700.0)
-    )
-    for kind in ("box", "ellipsoid", "cylinder", "capsule"):
-        size = (0.1, 0.2 if kind in ("box", "ellipsoid") else 0.0, 0.3)
-        text = " ".join(str(one) for one in size if one)
-        placed = f'<geom type="{kind}" size="{text}" pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/>'
-        R = in_series(("x", 0.5), ("y", 0.6), ("z", 0.7))
-        yield second(f"geom {kind}", placed, dense(solid_of(kind, *size), R=R, com=BODY.com))
-    # From (0, 0, 0) to (0.2, 0.4, -0.4): of length 0.6, about the middle.
-    ends, middle = 'fromto="0 0 0 0.2 0.4 -0.4"', (0.1, 0.2, -0.2)
-    R = about((-2.0, 1.0, 0.0), math.acos(-2.0 / 3.0))
-    for kind in ("cylinder", "capsule"):
-        link = dense(solid_of(kind, 0.1, 0.0, 0.3), R=R, com=middle)
-        yield second(f"geom {kind} from end to end", f'<geom type="{kind}" size="0.1" {ends}/>', link)
     one, two = (f'<geom size="0.1" pos="0 0 {at}" mass="{mass}"/>' for at, mass in ((0.3, 1), (-0.3, 2)))
     moment = 3.0 * 0.004
     across = moment + 1.0 * 0.4**2 + 2.0 * 0.2**2
     pair = replace(NEXT, mass=3.0, com=(0.0, 0.0, -0.1), inertia=diagonal(across, across, moment))
-    yield second("two geoms", one + two, pair)
     grouped = '<compiler angle="radian" inertiagrouprange="0 2"/>'
     shown = '<geom size="0.3" pos="1 1 1" group="3"/>'
     yield second("geoms of groups that don't count", f'<geom size="0.1"/>{shown}', ball, grouped)
     yield second("geoms of groups that count", f'<geom size="0.1" group="2"/>{shown}', ball, grouped)
-    light = '<geom size="0.3" pos="1 1 1" mass="0"/><geom size="0.2" pos="1 1 1" density="0"/>'
-    yield second("geoms without mass", f'<geom size="0.1"/>{light}', ball)
-    unseen = '<geom size="0.1" contype="0" conaffinity="0" group="2"/>'
-    yield second("geom that meets nothing", unseen, ball)
     shown_only = 'contype="0" conaffinity="0" group="2"'
     visual = two.replace("/>", f" {shown_only}/>")
     yield second("mass of a visual geom beside a solid one", one + visual, pair)
     alone = replace(NEXT, mass=2.0, com=ORIGIN, inertia=diagonal(0.008, 0.008, 0.008))
     yield second("mass of a visual geom", f'<geom size="0.1" mass="2" {shown_only}/>', alone)
-    ground = '<worldbody><geom type="plane" size="1 1 1"/><geom size="2" mass="5"/>'
-    yield _of("geoms of the world", file().replace("<worldbody>", ground), FIRST, NEXT)
 
 
 def files() -> dict[str, Reading]:

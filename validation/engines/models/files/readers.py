@@ -50,6 +50,23 @@ class Reading:
         return tuple(name for name in offered if name in asked)
 
 
+def shown(tree: Tree) -> tuple[str, ...]:
+    """What a file's reading shows in: functions that every number of its tree enters."""
+    joints = [joint for link in tree.links for joint in link.joints if joint.kind != "fixed"]
+    if any(one.mimics for one in joints):
+        return READ
+    lost = any(one.damping or one.stiffness or one.friction for one in joints) or bool(tree.forces)
+    asked = [*(PASSIVE if lost else READ), "link_bodies", *LOSSES]
+    asked += ["passive_forces"] if any(one.stiffness for one in joints) or "compensation" in tree.forces else []
+    asked += LIMITED if all(one.limits for one in joints) else LIMITED_OF_SOME
+    asked += BOUNDED[1:] if all(one.bounds for one in joints) else ()
+    asked += PLACED if tree.sensors else ()
+    if tree.tendons:  # Not all readers know of tendons, whose armature is part of the mass matrix.
+        asked = [one for one in asked if one != "mass_matrix"] + list(TENDONS)
+    asked += (*ACTUATORS, *DRIVEN) if tree.actuators else ()
+    return tuple(dict.fromkeys(asked))
+
+
 def about(axis: Vector, angle: float) -> Rows:
     """Rotation about an axis of any length."""
     x, y, z = np.array(axis) / math.hypot(*axis)

@@ -1,33 +1,24 @@
-"""URDF: what its elements mean, where they are left out, and what has no effect (wiki.ros.org/urdf/XML)."""
+"""URDF: planes, shapes and sensors of links (wiki.ros.org/urdf/XML); what stands alone is in `covering.urdf_files`."""
 
 from __future__ import annotations
 
-import math
 from collections.abc import Iterator
 from dataclasses import replace
 from functools import partial
 
 import numpy as np
 
-from ...interface import ORIGIN, Array, End, Joint, Link, Vector, rows
+from ...interface import Array, End, Joint, Vector, rows
 from . import readers
 from .readers import (
     ASKEW,
     BODY,
-    BOUNDED,
-    IDENTITY,
-    LOSSES,
     NEXT,
-    OBLONG,
-    PASSIVE,
-    PRINCIPAL,
     PRODUCTS,
     TURNED,
     Reading,
-    along,
     diagonal,
     hung,
-    rpy_rotation,
 )
 
 _INERTIA = '<inertia ixx="0.2" ixy="0" ixz="0" iyy="0.3" iyz="0" izz="0.4"/>'
@@ -78,100 +69,6 @@ def _chain(*stated: str, links: tuple[str, ...] = (_A, _B, _C), more: str = "") 
 _of = partial(readers.reading, "urdf")
 
 
-def _inertias() -> Iterator[tuple[str, Reading]]:
-    """What links state of inertia."""
-
-    def stated(name: str, a: str, link: Link) -> tuple[str, Reading]:
-        return _of(name, _chain(_FIRST, _SECOND, links=(a, _B)), link, NEXT)
-
-    turned = replace(BODY, inertia=along(ASKEW, PRINCIPAL))
-    yield stated("plain", _A, BODY)
-    yield stated("inertial frame turned", _ASKEW_A, turned)
-    equal = replace(BODY, inertia=diagonal(0.3, 0.3, 0.3))
-    yield stated("equal moments, frame turned", _ASKEW_A.replace(_INERTIA, _EQUAL), equal)
-    two = _ASKEW_A.replace('ixx="0.2"', 'ixx="0.3"')
-    yield stated("two equal moments, frame turned", two, replace(BODY, inertia=along(ASKEW, diagonal(0.3, 0.3, 0.4))))
-    yield stated("products of inertia", _A.replace(_INERTIA, _OBLONG), replace(BODY, inertia=OBLONG))
-    askew = replace(BODY, inertia=along(ASKEW, OBLONG))
-    yield stated("products of inertia, frame turned", _ASKEW_A.replace(_INERTIA, _OBLONG), askew)
-    yield stated("inertial origin left out", _A.replace('<origin xyz="0.1 -0.2 0.3"/>', ""), replace(BODY, com=ORIGIN))
-    unplaced = _ASKEW_A.replace('xyz="0.1 -0.2 0.3" ', "")
-    yield stated("inertial frame turned, xyz left out", unplaced, replace(turned, com=ORIGIN))
-    yield stated("shapes beside inertia", _A.replace("</link>", f"{_SHAPES}</link>"), BODY)
-    reversed_text = _A.replace('<origin xyz="0.1 -0.2 0.3"/><mass value="2"/>', '<mass value="2"/>').replace(
-        "</inertial>", '<origin xyz="0.1 -0.2 0.3"/></inertial>'
-    )
-    yield stated("elements in another order", reversed_text, BODY)
-
-
-def _placements() -> Iterator[tuple[str, Reading]]:
-    """Where joints stand, and about what they turn."""
-
-    def first(name: str, origin: str, **changes: object) -> tuple[str, Reading]:
-        return _of(name, _chain(_FIRST.replace(_AT, origin), _SECOND), hung(BODY, **changes), NEXT)
-
-    def axis(name: str, text: str, value: tuple[float, float, float]) -> tuple[str, Reading]:
-        return _of(name, _chain(_FIRST, _SECOND.replace('<axis xyz="0 1 0"/>', text)), BODY, hung(NEXT, axis=value))
-
-    yield first("rpy left out", '<origin xyz="0.1 0.2 0.3"/>', R=IDENTITY)
-    yield first("xyz left out", '<origin rpy="0.3 -0.4 0.5"/>', p=ORIGIN)
-    yield first("joint origin left out", "", R=IDENTITY, p=ORIGIN)
-    for name, angles in (
-        ("pitch of a quarter turn", (0.4, math.pi / 2, 0.3)),
-        ("pitch of minus a quarter turn", (0.4, -math.pi / 2, 0.3)),
-        ("roll of a half turn", (math.pi, 0.2, -0.3)),
-        ("yaw of a half turn", (0.2, -0.3, math.pi)),
-        ("angles beyond a half turn", (4.0, 2.5, -5.0)),
-    ):
-        text = " ".join(map(repr, angles))
-        yield first(name, f'<origin xyz="0.1 0.2 0.3" rpy="{text}"/>', R=rpy_rotation(*angles))
-    yield first("numbers in other spellings", '<origin xyz=" 1e-1 2.0E-1 +.3 " rpy="3e-1  -.4 +0.50"/>')
-    yield axis("axis left out", "", (1.0, 0.0, 0.0))
-    yield axis("axis against z", '<axis xyz="0 0 -1"/>', (0.0, 0.0, -1.0))
-    yield axis("axis against x", '<axis xyz="-1 0 0"/>', (-1.0, 0.0, 0.0))
-    yield axis("axis almost x", '<axis xyz="0.99999999995 0.00001 0"/>', (0.99999999995, 0.00001, 0.0))
-    yield axis("axis of length 2", '<axis xyz="0 2 0"/>', (0.0, 1.0, 0.0))
-    yield axis("axis oblique", _OBLIQUE, (0.6, 0.0, 0.8))
-
-
-def _kinds() -> Iterator[tuple[str, Reading]]:
-    """Kinds of joints, and what has no effect on the motion that they leave."""
-
-    def second(name: str, text: str, **changes: object) -> tuple[str, Reading]:
-        return _of(name, _chain(_FIRST, text), BODY, hung(NEXT, **changes))
-
-    yield second("continuous", _SECOND.replace("revolute", "continuous"), form="unbounded")
-    aside = {"axis": (0.6, 0.0, 0.8)}
-    turns = _FIRST.replace("revolute", "continuous").replace(_ALONG, _OBLIQUE)
-    yield _of("continuous, oblique", _chain(turns, _SECOND), hung(BODY, form="unbounded", **aside), NEXT)
-    yield second("prismatic", _SECOND.replace("revolute", "prismatic"), kind="prismatic")
-    slides = _FIRST.replace("revolute", "prismatic").replace(_ALONG, _OBLIQUE)
-    yield _of("prismatic, oblique", _chain(slides, _SECOND), hung(BODY, kind="prismatic", **aside), NEXT)
-    along_x = _SECOND.replace("revolute", "prismatic").replace('<axis xyz="0 1 0"/>', "")
-    yield second("prismatic, axis left out", along_x, kind="prismatic", axis=(1.0, 0.0, 0.0))
-    ratio = '<mimic joint="joint_a" multiplier="2" offset="0.5"/>'
-    sliding = _SECOND.replace("revolute", "prismatic") + '<mimic joint="joint_a" multiplier="-0.25" offset="0.125"/>'
-    yield second("mimic of a slide", sliding, kind="prismatic", mimics="a", ratio=-0.25, offset=0.125)
-    turning = _SECOND.replace('<axis xyz="0 1 0"/>', _OBLIQUE) + '<mimic joint="joint_a" multiplier="-1.5"/>'
-    yield second("mimic, oblique, offset left out", turning, axis=(0.6, 0.0, 0.8), mimics="a", ratio=-1.5)
-    shifted = f'{_SECOND}<mimic joint="joint_a" offset="-0.75"/>'
-    yield second("mimic, multiplier left out", shifted, mimics="a", offset=-0.75)
-    last = replace(_C_LINK, joints=(replace(NEXT.joints[0], mimics="a", ratio=2.0, offset=0.5),))
-    yield _of("mimic beyond a joint", _chain(_FIRST, _SECOND, _SECOND + ratio), BODY, NEXT, last)
-    reversed_text = _SECOND.replace('<axis xyz="0 1 0"/>', '<axis xyz="0 -1 0"/>') + ratio
-    yield second("mimic against an axis", reversed_text, axis=(0.0, -1.0, 0.0), mimics="a", ratio=2.0, offset=0.5)
-    yield second("mimic", f"{_SECOND}{ratio}", mimics="a", ratio=2.0, offset=0.5)
-    yield second("mimic with its defaults", f'{_SECOND}<mimic joint="joint_a"/>', mimics="a")
-    yield second("limits that leave out zero", _SECOND.replace('lower="-9"', 'lower="0.5"').replace('"9"', '"1"', 1))
-    damped = f'{_SECOND}<dynamics damping="0.7" friction="0.3"/>'
-    yield _of("damping and friction", _chain(_FIRST, damped), BODY, NEXT, asked=PASSIVE)
-    yield second("safety controller", f'{_SECOND}<safety_controller k_velocity="3"/><calibration rising="0.4"/>')
-    loose = replace(BODY, joints=(Joint("free"),))
-    yield _of("floating", _chain("floating|", _SECOND), loose, NEXT)
-    plane = Joint("planar", R=BODY.joints[0].R, p=BODY.joints[0].p)
-    yield _of("planar", _chain(f'planar|{_AT}<axis xyz="0 0 1"/>', _SECOND), replace(BODY, joints=(plane,)), NEXT)
-
-
 def _planes() -> Iterator[tuple[str, Reading]]:
     """Planes across other axes than z: which two directions slide in them, the format leaves open."""
     first = BODY.joints[0]
@@ -186,6 +83,9 @@ def _planes() -> Iterator[tuple[str, Reading]]:
         turned = replace(BODY, joints=(plane, Joint("fixed", R=rows(R.T))))
         stated = f'planar|{_AT}<axis xyz="{text}"/>'
         yield _of(name, _chain(stated, _SECOND), turned, NEXT, asked=("sizes", "link_turning"))
+    lost = replace(BODY, joints=(Joint("planar", R=first.R, p=first.p, damping=0.7),))
+    damped = f'planar|{_AT}{_ALONG}<dynamics damping="0.7"/>'
+    yield _of("damping of a planar joint", _chain(damped, _SECOND), lost, NEXT, asked=("joint_dampings",))
 
 
 def _across(axis: Vector) -> Array:
@@ -194,86 +94,6 @@ def _across(axis: Vector) -> Array:
     x = np.cross(z, np.eye(3)[int(np.argmin(np.abs(z)))])
     x /= np.linalg.norm(x)
     return np.stack([x, np.cross(z, x), z], axis=1)
-
-
-def _losses() -> Iterator[tuple[str, Reading]]:
-    """Dampers and dry friction of joints, which no function of M and g shows."""
-    text, lost = '<dynamics damping="0.7" friction="0.3"/>', {"damping": 0.7, "friction": 0.3}
-
-    def second(name: str, text: str, **changes: object) -> tuple[str, Reading]:
-        return _of(name, _chain(_FIRST, text), BODY, hung(NEXT, **changes), asked=LOSSES)
-
-    yield second("losses of a hinge", _SECOND + text, **lost)
-    yield second("losses of a hinge without limits", _SECOND.replace("revolute", "continuous") + text, **lost)
-    yield second("losses of a slide", _SECOND.replace("revolute", "prismatic") + text, kind="prismatic", **lost)
-    plane = replace(BODY, joints=(Joint("planar", R=BODY.joints[0].R, p=BODY.joints[0].p, damping=0.7),))
-    damped = f'planar|{_AT}{_ALONG}<dynamics damping="0.7"/>'
-    yield _of("damping of a planar joint", _chain(damped, _SECOND), plane, NEXT, asked=("joint_dampings",))
-    yield second("friction alone", _SECOND + '<dynamics friction="0.3"/>', friction=0.3)
-    yield second("damping alone", _SECOND + '<dynamics damping="0.7"/>', damping=0.7)
-
-
-def _limits() -> Iterator[tuple[str, Reading]]:
-    """Limits of joints; a bound that is left out is 0."""
-    first = hung(BODY, limits=(-9.0, 9.0), bounds=(9.0, 9.0))
-
-    def second(name: str, bounds: str, *limits: float, kind: str = "revolute") -> tuple[str, Reading]:
-        text = _SECOND.replace(_LIMIT, f'<limit {bounds} effort="7" velocity="3"/>').replace("revolute", kind)
-        return _of(
-            name, _chain(_FIRST, text), first, hung(NEXT, kind=kind, limits=limits, bounds=(3.0, 7.0)), asked=BOUNDED
-        )
-
-    yield second("limits of a hinge", 'lower="-0.5" upper="1.25"', -0.5, 1.25)
-    yield second("limits of a slide", 'lower="-0.25" upper="2"', -0.25, 2.0, kind="prismatic")
-    yield second("limits above zero", 'lower="0.5" upper="1.25"', 0.5, 1.25)
-    yield second("limits beyond a turn", 'lower="-7.5" upper="10"', -7.5, 10.0)
-    yield second("lower limit left out", 'upper="1.25"', 0.0, 1.25)
-    yield second("upper limit left out", 'lower="-0.5"', -0.5, 0.0)
-    guard = '<safety_controller k_velocity="3" soft_lower_limit="-0.25" soft_upper_limit="0.5"/>'
-    text = _SECOND.replace(_LIMIT, f'<limit lower="-0.5" upper="1.25" effort="7" velocity="3"/>{guard}')
-    yield _of(
-        "limits beside soft ones",
-        _chain(_FIRST, text),
-        first,
-        hung(NEXT, limits=(-0.5, 1.25), bounds=(3.0, 7.0)),
-        asked=BOUNDED,
-    )
-
-
-def _trees() -> Iterator[tuple[str, Reading]]:
-    """Links that don't move, links without mass, names and order."""
-    still = hung(BODY, kind="fixed")
-    grounded = _chain(_FIRST.replace("revolute", "fixed"), _SECOND)
-    yield _of("fixed link with mass first", grounded, still, NEXT)
-    yield _of("fixed link with mass amid", _chain(_FIRST, _FIXED, _SECOND), BODY, _REST, _C_LINK)
-    yield _of("fixed link with mass", _chain(_FIRST, _FIXED), BODY, _REST)
-    empty = '<link name="b"/>'
-    nothing = replace(_REST, mass=0.0, com=ORIGIN, inertia=diagonal(0.0, 0.0, 0.0))
-    amid = _chain(_FIRST, _FIXED, _SECOND, links=(_A, empty, _C))
-    yield _of("fixed link without inertia amid", amid, BODY, nothing, _C_LINK)
-    yield _of("fixed link without inertia last", _chain(_FIRST, _FIXED, links=(_A, empty)), BODY, nothing)
-    across = _SECOND.replace("0 1 0", "1 0 0")
-    moving = replace(nothing, joints=(replace(NEXT.joints[0], axis=(1.0, 0.0, 0.0)),))
-    crossed = _chain(_FIRST, across, _SECOND, links=(_A, empty, _C))
-    yield _of("moving link without inertia amid", crossed, BODY, moving, _C_LINK)
-    shaped = f'<link name="b">{_SHAPES}</link>'
-    yield _of("shapes without inertia", _chain(_FIRST, _FIXED, links=(_A, shaped)), BODY, nothing)
-    joints = _joint("b", "a", _SECOND) + _joint("a", "world", _FIRST)
-    yield _of("children before parents", f'<robot name="r">{joints}{_B}{_A}{_WORLD}</robot>', BODY, NEXT)
-    joints = _joint("a", "world", _FIRST, "{}") + _joint("b", "a", _SECOND, "{}")
-    yield _of("joints named as their links", f'<robot name="r">{_WORLD}{_A}{_B}{joints}</robot>', BODY, NEXT)
-    base = _chain(_FIRST, _SECOND).replace('"world"', '"ground"')
-    yield _of("base link of another name", base, BODY, NEXT)
-    heavy = _chain(_FIRST, _SECOND).replace(_WORLD, _B.replace('"b"', '"world"'))
-    yield _of("base link with mass", heavy, BODY, NEXT)
-    others = (
-        '<gazebo reference="a"><mass>7</mass><gravity>0</gravity></gazebo>'
-        '<material name="red"><color rgba="1 0 0 1"/></material>'
-        '<transmission name="t"><type>transmission_interface/SimpleTransmission</type><joint name="joint_a">'
-        "<hardwareInterface>hardware_interface/EffortJointInterface</hardwareInterface></joint>"
-        '<actuator name="m"><mechanicalReduction>50</mechanicalReduction></actuator></transmission><!-- end -->'
-    )
-    yield _of("elements of other programs", _chain(_FIRST, _SECOND, more=others), BODY, NEXT)
 
 
 def _from_shapes() -> Iterator[tuple[str, Reading]]:
@@ -323,13 +143,7 @@ def files() -> dict[str, Reading]:
     """All of them, by name."""
     return dict(
         [
-            *_inertias(),
-            *_placements(),
-            *_kinds(),
             *_planes(),
-            *_losses(),
-            *_limits(),
-            *_trees(),
             *_from_shapes(),
             *_shaped(),
             *_sensed(),

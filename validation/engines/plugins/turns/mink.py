@@ -61,7 +61,7 @@ _PLACEMENTS = {
 _LIMITS = """configuration = mink.Configuration(m, q)
 found = mink.ConfigurationLimit(m, gain=1.0, min_distance_from_limits=0.0).compute_qp_inequalities(configuration, 1.0)
 value = np.array([[-np.inf, np.inf]] * m.nv)
-for row, bound in zip(*found):
+for row, bound in zip(*found) if found[0] is not None else ():
     k = np.argmax(np.abs(row))
     place = m.jnt_qposadr[m.dof_jntid[k]]
     value[k, int(row[k] > 0)] = configuration.q[place] + bound / row[k]"""
