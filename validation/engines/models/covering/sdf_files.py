@@ -326,7 +326,12 @@ FEATURES: Features = {
     },
     "order": {"children before parents": [("model", "~")]},
 }
-_TURNED_JOINTS = ("joint's frame turned", "joint's frame turned aside", "joint relative to the parent")
+_TURNED_JOINTS = (
+    "joint's frame turned",
+    "joint's frame turned aside",
+    "joint relative to the parent",
+    "a frame for child",
+)
 # What means nothing, or what no page states.
 NEVER: list[Pair] = [
     frozenset(pair)
