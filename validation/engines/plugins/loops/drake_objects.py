@@ -174,11 +174,16 @@ value = p.CalcMassMatrix(c) @ (after - before)
 
 # Bodies, and frames on them, are each of a model instance of its own, so that each joint is between two.
 _INSTANCES = (
+    (".body_frame()", ".beside()"),
     (
         "p = drake",
         """def own(): return p.AddModelInstance(f'one of {p.num_model_instances()}')
 frame = drake.FixedOffsetFrame
-def body(name, inertia): return drake.MultibodyPlant.AddRigidBody(p, name, own(), inertia)
+def beside(b): return p.AddFrame(frame(f'beside {b.name()}', b.body_frame(), drake.RigidTransform(), own()))
+def body(name, inertia):
+    b = drake.MultibodyPlant.AddRigidBody(p, name, own(), inertia)
+    type(b).beside = beside
+    return b
 def offset(name, on, X): return frame(name, on if isinstance(on, drake.Frame) else on.body_frame(), X, own())
 p = drake""",
     ),
