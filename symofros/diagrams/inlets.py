@@ -9,7 +9,7 @@ from typing import Any
 
 import numpy as np
 
-from symofros.base.arrays import Array, numeric
+from symofros.base.arrays import Array, numeric, real_array
 from symofros.description import ExpressionError, parse
 from symofros.diagrams.block import Block, Environment, EvaluationContext, Port, Ports, Shape, Values
 from symofros.diagrams.diagram import Diagram
@@ -178,6 +178,8 @@ def _misnamed(diagram: Diagram, inputs: Mapping[str, Any] | None) -> Iterable[Pr
     for name in diagram.inlets:
         if inputs.get(name) is None:
             yield not_given(diagram.name, name)
+        elif not isinstance(inputs[name], Signal) and not are_finite(inputs[name]):
+            yield not_finite(name, inputs[name])
 
 
 def not_given(diagram: str, inlet: str) -> Problem:
@@ -188,6 +190,17 @@ def not_given(diagram: str, inlet: str) -> Problem:
         "what enters from outside is given by name: numbers, a Signal, or formulas of t",
         f"run(t_end, inputs={{'{inlet}': 0.0}}), or include the diagram in another",
     )
+
+
+def are_finite(given: Any) -> bool:
+    """Whether numbers for an inlet are finite; what is no number is judged elsewhere."""
+    array = real_array(given)
+    return array is None or bool(np.isfinite(array).all())
+
+
+def not_finite(inlet: str, given: Any) -> Problem:
+    """What is wrong with numbers for an inlet that are not finite."""
+    return Problem(f"inlet '{inlet}': a number is not finite", f"{given!r:.60}", "signals are finite", "give another")
 
 
 def _refused(name: str, found: str, rule: str, remedy: str) -> DescriptionError:

@@ -387,6 +387,7 @@ def test_samples_that_nothing_depends_on_count_for_nothing() -> None:
     [
         ({"inputs": {"gaol": [0.0, 0.0]}}, sf.UnknownNameError, "no inlet 'gaol'[\\s\\S]*did you mean 'goal'"),
         ({"inputs": {"goal": [0.0]}}, sf.ShapeError, "inlet 'goal' does not fit"),
+        ({"inputs": {"goal": [0.0, np.nan]}}, sf.SymofrosError, "inlet 'goal': a number is not finite"),
         ({"starts": {"plant.q9": 0.0}}, sf.UnknownNameError, "no state 'plant.q9'"),
         ({"outputs": ["pd.nothing"]}, sf.DescriptionError, "nothing"),
     ],

@@ -233,7 +233,7 @@ def test_a_program_refuses_times_before_the_present_and_goes_on_from_copies_of_i
         ({"goal": "1/(t - t)", "q": 0.0, "v": 0.0}, r"formula '1/\(t - t\)' has no value"),
         ({"goal": "sin(q)", "q": 0.0, "v": 0.0}, "formulas of inlets are of the time t"),
         ({"goal": "sin(", "q": 0.0, "v": 0.0}, "inlet 'goal'"),
-        ({"goal": float("nan"), "q": 0.0, "v": 0.0}, "not samples over time"),
+        ({"goal": float("nan"), "q": 0.0, "v": 0.0}, "inlet .goal.: a number is not finite"),
     ],
 )
 def test_inputs_that_do_not_fit_are_refused(inputs: Any, words: str) -> None:

@@ -9,14 +9,14 @@ from typing import Any
 import numpy as np
 
 from symofros.base.arrays import Array, numeric
-from symofros.diagrams.inlets import VALUE, open_inlets
+from symofros.diagrams.inlets import VALUE, are_finite, not_finite, open_inlets
 from symofros.diagrams.program.compiled import CompiledDiagram, Resolved
 from symofros.diagrams.program.layout import Part
 from symofros.diagrams.program.point import AFTER
 from symofros.diagrams.run.parts import place_parts
 from symofros.diagrams.run.starts import Start
 from symofros.diagrams.run.values import parameter_values, part_settings
-from symofros.errors import ShapeError, UnknownNameError, did_you_mean
+from symofros.errors import ShapeError, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.manifold import retract
 from symofros.simulation.analysis.sliding import contact_dynamics
 from symofros.simulation.inputs import held_sample
@@ -72,6 +72,8 @@ class OperatingPoint:
             if array.shape not in ((), place.shape):
                 what, rule = f"state_space: inlet '{name}' does not fit", f"numbers of shape {place.shape}"
                 raise ShapeError(what, str(array.shape), rule, "give it that shape")
+            if not are_finite(array):
+                raise SymofrosError(not_finite(name, value))
             begin.u[place.slice] = array.reshape(-1)
         options = SimulationOptions(t0=t)
         placed = place_parts(compiled, lambda model: part_settings(options, model, t + 1.0), par, begin)
