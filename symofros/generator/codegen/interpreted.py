@@ -20,6 +20,8 @@ from symofros.runtime.responses import respond
 # Places in a step at which formulas of the state are looked at, and most change of an operand between two of them by
 # which what it makes is seen.
 _LOOKS, _RESOLVED = 4, 2.0
+# Change of such an operand from one state to the next from which what it makes bends.
+_STEEP = 0.1
 
 
 class FormulaInstants:
@@ -82,7 +84,8 @@ class FormulaInstants:
     def bend(self, par: Array, states: Mapping[str, Array]) -> bool:
         """Whether an operand of a kink passes zero along states, or comes near to it.
 
-        Near is what changes by as much from one state to the next, or to the one beside these.
+        Near is what changes by as much from one state to the next, or to the one beside these. So do operands of narrow
+        parts where that is a change by a tenth, and where they end: what they make is a bend between such states.
 
         Args:
             par: Run-time parameters (npar).
@@ -90,10 +93,13 @@ class FormulaInstants:
         """
         at = {**states, "par": par[np.newaxis]}
         for operand, evaluation in zip(self._operands, self._evaluations, strict=True):
-            if operand.kind != InstantKind.KINK:
-                continue
             value = np.broadcast_to(evaluation(at)[0], len(states["t"]))
-            change = np.abs(np.diff(value, prepend=value[:1], append=value[-1:]))
+            with np.errstate(invalid="ignore"):  # An exponential that overflows stays so.
+                change = np.nan_to_num(
+                    np.abs(np.diff(value, prepend=value[:1], append=value[-1:])), nan=0.0, posinf=np.inf
+                )
+            if operand.kind == InstantKind.NARROW:
+                change[change < _STEEP] = 0.0
             near = np.maximum(change[:-1], change[1:])
             if not (np.abs(value) >= near).all():
                 return True
