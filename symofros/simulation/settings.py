@@ -24,6 +24,8 @@ from symofros.simulation.stepping.stepper import Stepper
 # takes is of second order in that error: a run that loses a hundredth has steps that are wrong by tenths. Closed
 # reference models lose less than 1e-4, those at steps that are far too long more than 1e-2.
 LOSS_LIMIT = 0.01
+# Of a step: nearer to one of its ends a sample begins there.
+_AT_END = 1e-6
 # Intervals of a run in which adaptive steps are looked into where next to nothing happens.
 LOOKS = native_number("stepping/events/quiet_steps.c", "SYM_LOOKS")
 # Share of a step within which the end of one is another's.
@@ -120,6 +122,13 @@ class Settings:
     def judged(self) -> bool:
         """Whether its steps can be judged by how they amplify a mode: fixed ones, of most families."""
         return not self.adaptive and self.method.family.judged
+
+    def samples_within_steps(self, jumps: Array) -> bool:
+        """Whether held samples, which begin at `jumps`, do so within fixed steps: stages read one or the other."""
+        if self.adaptive:
+            return False
+        steps = (jumps[(jumps > self.t0) & (jumps < self.t_end)] - self.t0) / self.dt
+        return bool(np.any(np.abs(steps - np.rint(steps)) > _AT_END))
 
     @classmethod
     def of(cls, model: Model, options: SimulationOptions, t_end: float) -> Settings:

@@ -4,14 +4,19 @@ from __future__ import annotations
 
 import inspect
 import traceback
-from collections.abc import Callable
+from collections.abc import Callable, Sequence
 from pathlib import Path
 from types import CodeType
 from typing import Any
 
+import numpy as np
+
+from symofros.base.arrays import Array
 from symofros.errors import ArgumentError
 
 _PACKAGE = str(Path(__file__).parents[1])
+# States, about, at which a function is asked again for the inputs; share by which they may differ.
+_CALLED, _SAME = 8, 1e-9
 
 
 def named_function(function: Callable[..., Any]) -> str:
@@ -56,3 +61,14 @@ def raised_where(error: BaseException) -> str:
     own = [frame for frame in frames if not frame.filename.startswith(_PACKAGE)]
     where = own[0] if own else frames[-1] if frames else None
     return f"{error!r} at {Path(where.filename).name}:{where.lineno} in {where.name}" if where else repr(error)
+
+
+def gives_again(function: Callable[..., Any], states: Sequence[Array]) -> bool:
+    """Whether a function of the user's gives the recorded inputs once more, at some of the states t (n), q, v, u."""
+    t, q, v, u = (array[:: -max(1, len(array) // _CALLED)] for array in states)
+    try:
+        again = [np.asarray(function(float(t[i]), q[i].copy(), v[i].copy()), float) for i in range(len(t))]
+    except Exception:  # Whatever it raises: the run itself has ended well.
+        return False
+    size = float(np.abs(u).max(initial=0.0))
+    return all(row.shape == u[i].shape and np.abs(row - u[i]).max() <= _SAME * size for i, row in enumerate(again))

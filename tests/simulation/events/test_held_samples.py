@@ -108,3 +108,18 @@ def test_a_sample_that_begins_at_zero_counts_from_there(
 def test_faults_of_samples_are_named(t: list[float], values: list[Any], said: str) -> None:
     with pytest.raises(sf.ShapeError, match=said):
         sf.Signal(t, values)
+
+
+@pytest.mark.parametrize("given", ["samples", "function"])
+def test_jumps_within_fixed_steps_are_noted_where_they_matter(given: str) -> None:
+    """A motion that was off by less than a tenth bore no note; where the same force is a formula it did."""
+    joint = sf.Joint("z", "prismatic", axis=(1, 0, 0), actuated=True, elements=(sf.Spring(3.0), sf.Damper(0.2)))
+    model = sf.compile(sf.System("pushed", (sf.RigidBody("b", joint, sf.Inertia(2.0)),), gravity=(0, 0, 0)))
+    signal = sf.Signal([0.0, 0.3, 0.5], [1.0, -4.0, 2.0], "hold")
+    u: Any = {"z": signal} if given == "samples" else lambda t, q, v: [1.0 if t < 0.3 else -4.0 if t < 0.5 else 2.0]
+    at: dict[str, Any] = {"t_end": 0.6, "output": 0.01}
+    right = sf.simulate(model, u={"z": signal}, method="dop853", rtol=1e-11, atol=1e-13, **at)
+    for dt, wrong in ((0.013, True), (0.003, False)):
+        run = sf.simulate(model, u=u, dt=dt, **at)
+        off = np.abs(run.q - right.q).max() / np.abs(right.q).max()
+        assert (off > 0.05) == wrong == bool(run.outcome.notes), (off, run.outcome)

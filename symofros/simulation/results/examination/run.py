@@ -17,16 +17,16 @@ from symofros.base.arrays import Array, Mask
 from symofros.errors import SymofrosError
 from symofros.runtime.manifold import retract
 from symofros.runtime.model import Model
-from symofros.simulation.inputs import Callback
 from symofros.simulation.results.examination.finer_steps import HeldRun, Part, States, change_of_states
 from symofros.simulation.settings import Settings
 from symofros.simulation.stepping.loops import Recorded, run_to_end
 from symofros.simulation.stepping.methods import METHODS, Method
 from symofros.simulation.stepping.stepper import Stepper
 from symofros.simulation.stepping.windows import WHOLE, Window
+from symofros.simulation.user_functions import gives_again
 
-# States, about, at which a function of the user's is asked again for the inputs; share by which they may differ.
-_CALLED, _SAME = 8, 1e-9
+# Leap of a function's input between two states, of its range.
+_LEAP = 0.1
 # Records, about, among which the fastest is looked for.
 _SPEEDS = 64
 # Most steps of a part that is made once more in short steps, or with tighter bounds.
@@ -97,12 +97,20 @@ class ExaminedRun(HeldRun):
 
     @cached_property
     def amplifies(self) -> bool:
-        """Whether contacts, or forces that bend or jump, may amplify errors, which no mode at a few states shows."""
-        if self.model.record.has_compliant_contacts:
+        """Whether contacts, or forces or inputs that bend or jump, may amplify errors: no mode at a state shows it."""
+        if self.model.record.has_compliant_contacts or self._inputs_jump:
             return True
         t, q, v, u = self.states
         states = {"t": t[:, np.newaxis], "q": q, "v": v, "u": u}
         return self.model.formula_instants.bend(self.stepper.laws, self.stepper.par, states)
+
+    @property
+    def _inputs_jump(self) -> bool:
+        """Whether inputs jump within fixed steps: held samples, or those of a function in a short run."""
+        inputs, u = self.stepper.inputs, self.states[3]
+        if inputs.callback is None or self.settings.adaptive or not self.short:
+            return self.settings.samples_within_steps(inputs.jumps)
+        return bool(np.any(np.abs(np.diff(u, axis=0)) > _LEAP * np.ptp(u, axis=0)))
 
     def metrics(self, q: Array, u: Array) -> Array:
         """Mass matrices (n, nv, nv) at configurations (n, nq), states left out; units where there is no mass matrix."""
@@ -207,7 +215,7 @@ class ExaminedRun(HeldRun):
         if function is None or self.settings.realtime:
             return function is None
         if self.stepper.same_inputs_again is None:
-            self.stepper.same_inputs_again = _gives_again(function, self.states)
+            self.stepper.same_inputs_again = gives_again(function, self.states)
         return self.stepper.same_inputs_again
 
     def repeated(self, start: Sequence[Any], t_end: float, dt: float, **changes: Any) -> tuple[int, list[Array]]:
@@ -374,17 +382,6 @@ def norms_in(metric: Array, v: Array) -> Array:
     squares = np.einsum("ni,nij,nj->n", unit, metric, unit) if v.ndim == 2 else (unit @ metric * unit).sum(axis=-1)
     norms: Array = sizes * np.sqrt(np.maximum(squares, 0.0))
     return norms
-
-
-def _gives_again(function: Callback, states: States) -> bool:
-    """Whether a function of the user's gives the recorded inputs once more, at some of the states t (n), q, v, u."""
-    t, q, v, u = (array[:: -max(1, len(array) // _CALLED)] for array in states)
-    try:
-        again = [np.asarray(function(float(t[i]), q[i].copy(), v[i].copy()), float) for i in range(len(t))]
-    except Exception:  # Whatever it raises: the run itself has ended well.
-        return False
-    size = float(np.abs(u).max(initial=0.0))
-    return all(row.shape == u[i].shape and np.abs(row - u[i]).max() <= _SAME * size for i, row in enumerate(again))
 
 
 def share_of(part: float, whole: float) -> float:

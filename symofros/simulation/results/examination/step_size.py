@@ -10,7 +10,6 @@ import numpy as np
 from symofros.base.arrays import Array
 from symofros.errors import SymofrosError
 from symofros.simulation.analysis.kinematics.postures import worst_violation
-from symofros.simulation.inputs import InputPlan
 from symofros.simulation.results.examination.creep import creep_note
 from symofros.simulation.results.examination.energy_balance import EXPLODED, energy_note, energy_that_appeared
 from symofros.simulation.results.examination.finer_steps import percent
@@ -37,8 +36,6 @@ from symofros.simulation.stepping.stepper import Stepper
 
 # Records, about, among which the fastest is looked for.
 _SPEEDS = 200
-# Of a step: nearer to one of its ends a sample begins there.
-_AT_END = 1e-6
 
 
 def examine_run(run: ExaminedRun, *, ended_well: bool, failed: bool) -> tuple[Mode | None, tuple[str, ...]]:
@@ -60,7 +57,7 @@ def examine_run(run: ExaminedRun, *, ended_well: bool, failed: bool) -> tuple[Mo
         return mode, tuple(notes)
     whole = run.amplifies and run.stepper.actions is None  # Of a run with actions all parts are held as one.
     if mode is None and not (whole and not run.short):
-        evident = resolution.evident and not _samples_within_steps(run.stepper.inputs, run.settings)
+        evident = resolution.evident and not run.settings.samples_within_steps(run.stepper.inputs.jumps)
         notes.append(halved_step_note(run, evident=evident))
     notes.append(input_impulse_note(run))
     if not any(notes):
@@ -134,15 +131,6 @@ def _pull(stepper: Stepper, settings: Settings, examined: Sequence[tuple[float, 
     except SymofrosError:  # Options.functions left out what says it.
         worst = None
     return Pull(rates, min(worst.share, 1.0), worst.t) if worst is not None else Pull(rates)
-
-
-def _samples_within_steps(inputs: InputPlan, settings: Settings) -> bool:
-    """Whether held samples begin within fixed steps, where stages read one or the other: no mode shows the error."""
-    if settings.adaptive:
-        return False
-    begins = inputs.jumps[(inputs.jumps > settings.t0) & (inputs.jumps < settings.t_end)]
-    steps = (begins - settings.t0) / settings.dt
-    return bool(np.any(np.abs(steps - np.rint(steps)) > _AT_END))
 
 
 def _speed_of_motion(norms: Array, at: int) -> float:
