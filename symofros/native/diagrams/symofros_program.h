@@ -85,6 +85,8 @@ int32_t sym_program_evaluate(sym_program_instance *instance);
 int32_t sym_program_start(sym_program_instance *instance);
 /* Index of a run-time parameter in `par` by its name in the diagram, such as "pd.kp[0]"; -1 where there is none. */
 int32_t sym_program_parameter(const sym_program *program, const char *name);
+/* The present value of a run-time parameter by its index in `par`: what an action of an event has set it to, once that has acted. */
+double sym_program_present(const sym_program_instance *instance, int32_t i);
 
 #ifdef __cplusplus
 }

@@ -107,7 +107,7 @@ static int fmu_get(fmu *f, size_t reference, double *value) {
     if (--reference < in) return *value = f->instance->inputs[reference], FMU_OK;
     if ((reference -= in) >= out) {
         if ((reference -= out) >= par) return FMU_UNKNOWN;
-        return *value = f->instance->par[reference], FMU_OK;
+        return *value = sym_program_present(f->instance, (int32_t)reference), FMU_OK;
     }
     if (!f->outputs_valid) {
         found = fmu_prepare(f);

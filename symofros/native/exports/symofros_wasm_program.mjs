@@ -59,8 +59,12 @@ export class Instance {
   /** Present time [s]. */
   get t() { return this.program.wasm.js_time(this.at); }
 
-  /** A copy of an input, an output or a parameter. Outputs are those of the last `advance` or `evaluate`. */
-  get(name) { return this.#view(this.program.find(name, 0, 1, PARAMETERS)).slice(); }
+  /** A copy of an input, an output or a parameter. Outputs are those of the last `advance` or `evaluate`; parameters are what
+   *  actions of events have set them to. */
+  get(name) {
+    const place = this.program.find(name, 0, 1, PARAMETERS), value = this.#view(place).slice();
+    return place.what === PARAMETERS ? value.map((_, i) => this.program.wasm.js_present(this.at, place.at + i)) : value;
+  }
 
   /** Set an input, which holds until it is set anew, or a parameter, which counts from `prepare()` or `start()` on: a number
    *  for all entries, or one number each. */

@@ -181,6 +181,15 @@ def test_a_unit_moves_as_the_run(version: int, case: str, tmp_path: Path) -> Non
         np.testing.assert_allclose(found, wanted[1:], **bound)
 
 
+def test_parameters_are_what_actions_have_set(tmp_path: Path) -> None:
+    """A latch that breaks: it was said to be shut, as it was at the start."""
+    unit = Unit(exported(alone(CASES["latch"]), 3, tmp_path / "fmu", dt=1e-3), 3, True, tmp_path / "unit")
+    unit.start()
+    assert unit.get("m.shut") == 1.0
+    unit.fmu.doStep(0.0, 0.5)
+    assert unit.get("m.shut") == 0.0
+
+
 def test_importers_get_the_reason_why_a_motion_has_ended(tmp_path: Path) -> None:
     """A rod that leans against its slide, with too much friction from an instant on."""
     rod = replace(rod_system(sf.formula("mu")), parameters=(sf.Parameter("mu", 0.1),))

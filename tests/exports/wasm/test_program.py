@@ -9,6 +9,8 @@ import numpy as np
 import pytest
 
 import symofros as sf
+from tests.diagrams.run.test_switching import CASES as SWITCHING
+from tests.diagrams.run.test_switching import diagram as switching
 from tests.docs import pages
 from tests.exports.cases import need, run
 from tests.exports.test_controller import CASES, RUN, STEPS, driven, given, outlets_of
@@ -51,6 +53,17 @@ refused(() => it.get("q"));
 console.log(JSON.stringify({ said, first }));
 """
 
+_ASK = """
+import { load } from "./latch.mjs";
+const it = (await load()).instance(), shut = [];
+shut.push(it.get("m.shut")[0]);
+it.advance(0.5);
+shut.push(it.get("m.shut")[0]);
+it.start();
+shut.push(it.get("m.shut")[0]);
+console.log(JSON.stringify(shut));
+"""
+
 
 @pytest.mark.tools
 @pytest.mark.parametrize("case", ["rates", "inside"])
@@ -71,6 +84,15 @@ def test_a_module_has_the_bits_of_the_program(case: str, tmp_path: Path) -> None
         (tmp_path / "page.mjs").write_text(f"{block.text}\nconsole.log(it.get('effort').length, it.t);")
         assert run("node", "page.mjs", cwd=tmp_path).split() == ["2", "0.001"]
         assert answer["inputs"]["goal"] == {"at": 0, "width": 2, "shape": [2], "units": ["rad", "rad"]}
+
+
+@pytest.mark.tools
+def test_parameters_are_what_actions_have_set(tmp_path: Path) -> None:
+    """A latch that breaks: it was said to be shut, as it was at the start."""
+    need("node")
+    folder = sf.export(switching(SWITCHING["latch"]), "wasm", tmp_path / "wasm", name="latch", dt=1e-3).folder
+    (folder / "ask.mjs").write_text(_ASK)
+    assert json.loads(run("node", "ask.mjs", cwd=folder)) == [1, 0, 1]
 
 
 @pytest.mark.tools
