@@ -99,7 +99,7 @@ def _operands(graph: Graph, edges: Sequence[Edge], of_states: bool) -> Iterator[
             yield Operand(_parity(graph, args[0]), InstantKind.KINK)
         elif op in _NARROWING or op in _ENDING:
             kind = InstantKind.NARROW if op in _NARROWING else InstantKind.END
-            yield from (Operand(arg, kind) for arg in args if known(arg))
+            yield from (Operand(arg, kind) for arg in args[op == "div" :] if known(arg))
 
 
 def _parity(graph: Graph, edge: Edge) -> Edge:

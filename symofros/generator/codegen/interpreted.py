@@ -6,7 +6,7 @@ from collections.abc import Callable, Mapping, Sequence
 
 import numpy as np
 
-from symofros.base.arrays import rounding_of
+from symofros.base.arrays import Mask, rounding_of
 from symofros.base.measures import Measures
 from symofros.expr.edges import Edge
 from symofros.expr.instants import InstantKind, Operand, instant_operands
@@ -20,8 +20,8 @@ from symofros.runtime.responses import respond
 # Places in a step at which formulas of the state are looked at, and most change of an operand between two of them by
 # which what it makes is seen.
 _LOOKS, _RESOLVED = 4, 2.0
-# Change of such an operand from one state to the next from which what it makes bends.
-_STEEP = 0.1
+# Change of such an operand from one state to the next from which what it makes bends, and how large it is there.
+_STEEP, _WITHIN = 0.1, 4.0
 
 
 class FormulaInstants:
@@ -85,7 +85,8 @@ class FormulaInstants:
         """Whether an operand of a kink passes zero along states, or comes near to it.
 
         Near is what changes by as much from one state to the next, or to the one beside these. So do operands of narrow
-        parts where that is a change by a tenth, and where they end: what they make is a bend between such states.
+        parts where that is a change by a tenth, and where they end: what they make is a bend between such states. A pulse
+        that lies between two states, far from either, is passed over: that is another matter.
 
         Args:
             par: Run-time parameters (npar).
@@ -95,15 +96,22 @@ class FormulaInstants:
         for operand, evaluation in zip(self._operands, self._evaluations, strict=True):
             value = np.broadcast_to(evaluation(at)[0], len(states["t"]))
             with np.errstate(invalid="ignore"):  # An exponential that overflows stays so.
-                change = np.nan_to_num(
-                    np.abs(np.diff(value, prepend=value[:1], append=value[-1:])), nan=0.0, posinf=np.inf
-                )
-            if operand.kind == InstantKind.NARROW:
-                change[change < _STEEP] = 0.0
+                change = np.abs(np.diff(value, prepend=value[:1], append=value[-1:]))
+            change[np.isnan(change)] = 0.0
             near = np.maximum(change[:-1], change[1:])
+            if operand.kind == InstantKind.NARROW:
+                passed = ~_meets(value) & (np.minimum(change[:-1], change[1:]) > 0.25 * np.abs(value))
+                near[passed | (near < _STEEP)] = 0.0
             if not (np.abs(value) >= near).all():
                 return True
         return False
+
+
+def _meets(value: Array) -> Mask:
+    """Whether states (n) lie in a narrow part, or at either side of it: a pulse that they pass over is beyond them."""
+    across, within = value[:-1] * value[1:] < 0.0, np.abs(value) < _WITHIN
+    met: Mask = within | np.append(across, False) | np.append(False, across)
+    return met
 
 
 def _may_pass_over(operands: Sequence[Operand], values: Operands, steps: Array) -> bool:
