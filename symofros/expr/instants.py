@@ -99,7 +99,8 @@ def _operands(graph: Graph, edges: Sequence[Edge], of_states: bool) -> Iterator[
             yield Operand(_parity(graph, args[0]), InstantKind.KINK)
         elif op in _NARROWING or op in _ENDING:
             kind = InstantKind.NARROW if op in _NARROWING else InstantKind.END
-            yield from (Operand(arg, kind) for arg in args[op == "div" :] if known(arg))
+            first = int(of_states and op == "div")  # A numerator that passes zero ends nothing.
+            yield from (Operand(arg, kind) for arg in args[first:] if known(arg))
 
 
 def _parity(graph: Graph, edge: Edge) -> Edge:

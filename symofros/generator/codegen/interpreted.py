@@ -85,8 +85,8 @@ class FormulaInstants:
         """Whether an operand of a kink passes zero along states, or comes near to it.
 
         Near is what changes by as much from one state to the next, or to the one beside these. So do operands of narrow
-        parts where that is a change by a tenth, and where they end: what they make is a bend between such states. A pulse
-        that lies between two states, far from either, is passed over: that is another matter.
+        parts where that is a change by a tenth, and where they end: what they make is a bend between such states. A
+        pulse that lies between two states, far from either, is passed over: that is another matter.
 
         Args:
             par: Run-time parameters (npar).
