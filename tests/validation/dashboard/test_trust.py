@@ -100,5 +100,5 @@ def test_missed_targets_are_yellow_and_nothing_else_is(entries: dict[str, Entry]
 
 def test_every_report_has_one_line_on_the_index(entries: dict[str, Entry]) -> None:
     page = html.page(index(entries), listed=False)
-    table = page.partition("<table>")[2].partition("</table>")[0]
-    assert re.findall(r'<a href="#(\w+)">', table) == [*TOPICS]
+    tables = [table.partition("</table>")[0] for table in page.split("<table>")]
+    assert [*TOPICS] in [re.findall(r'<a href="#(\w+)">', table) for table in tables]

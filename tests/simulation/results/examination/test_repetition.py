@@ -149,19 +149,14 @@ def test_long_runs_with_late_errors_get_a_note() -> None:
     assert wrong >= 5 and noted == wrong
 
 
-@pytest.mark.parametrize(
-    ("t_end", "said"),
-    [
-        (1.0, "do not show the motion: with half of that it does not come to this end"),
-        (15.0, "do not show the motion: with half of that it does not come to this end from t = 0 s"),
-    ],
-)
+@pytest.mark.parametrize("t_end", [1.0, 15.0])
 @pytest.mark.parametrize("met", [True, False])
-def test_forces_that_are_not_finite_between_steps_are_noted(t_end: float, said: str, met: bool) -> None:
+def test_forces_that_are_not_finite_between_steps_are_noted(t_end: float, met: bool) -> None:
     """A force that is no number for an instant: half the step asks for it there, or no step does."""
     instant = 0.1125 if met else 0.1107
     force = sf.formula(f"-20*x^3 + 1e-9*sqrt((t - {instant})^2 - 1e-7)")
     run = sf.simulate(sf.compile(slide(loads=(sf.Load((force, 0.0, 0.0)),))), [1.0], t_end=t_end, dt=0.05)
+    said = "do not show the motion: with half of that it does not come to this end"
     assert [said in note for note in run.outcome.notes] == [True] * met, run.outcome
 
 
