@@ -32,9 +32,9 @@ def times(x: float) -> str:
 
 
 def counted(number: int, noun: str) -> str:
-    """A number with its noun: "1 model", "2 models", "2 studies"."""
+    """A number with its noun: "1 model", "2 models", "2 studies", "2 ways"."""
     figures = f"{number:,}".replace(",", " ") if number >= 10_000 else str(number)
-    plural = f"{noun[:-1]}ies" if noun.endswith("dy") else f"{noun}s"
+    plural = f"{noun[:-1]}ies" if noun.endswith("y") and noun[-2] not in "aeou" else f"{noun}s"
     return f"{figures} {noun if number == 1 else plural}"
 
 
