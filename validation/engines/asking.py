@@ -24,14 +24,16 @@ from .models import (
     transformed,
 )
 from .models.covering import chains, scenes
+from .models.covering.edits import BETWEEN
 from .models.files.formats import formats
 from .models.files.readers import Reading
 from .workers import Job, Worker, registry
 
 # Seconds for each engine of the smoke tier, so that what is begun then ends within a minute.
 SMOKE = 50.0
-# Lots that scenes of features make.
-_PARTS = 5
+# Questions of a lot of scenes, which each ask of many features, and of a lot of files with one feature: these take a
+# hundredth of what trees take, which all functions are asked about.
+_SCENES, _FILES = 25, 12
 Questions = Mapping[str, Tree | Reading]
 # Name of a question -> names of the engines that it is put to.
 Asked = Mapping[str, Collection[str]]
@@ -43,16 +45,17 @@ def lots() -> list[Questions]:
     trees = (
         family.trees() for family in (hostile, loops, transformed, stated, sensed, flexible, single, soft, spacecraft)
     )
-    forms: dict[str, dict[str, Reading]] = {}
+    forms: dict[tuple[str, bool], dict[str, Reading]] = {}
     for name, one in formats().items():
-        forms.setdefault(one.form, {})[name] = one
-    return [*_scenes(), chains.trees(), *own, acting.driven(), acting.passive(), *trees, *forms.values()]
+        forms.setdefault((one.form, BETWEEN in name), {})[name] = one
+    files = (lot for (_, is_pair), form in forms.items() for lot in ([form] if is_pair else _cut(form, _FILES)))
+    return [*_cut(scenes.trees(), _SCENES), chains.trees(), *own, acting.driven(), acting.passive(), *trees, *files]
 
 
-def _scenes() -> list[Questions]:
-    """Scenes of features, as some lots that come first: each asks of many features."""
-    every = list(scenes.trees().items())
-    return [dict(every[first::_PARTS]) for first in range(_PARTS)]
+def _cut(every: Questions, most: int) -> list[Questions]:
+    """Lots of so many questions at most: one of each in turn gives all in the order in which they stand."""
+    names, lots = list(every), -(-len(every) // most)
+    return [{name: every[name] for name in names[first::lots]} for first in range(lots)]
 
 
 def questions() -> dict[str, Tree | Reading]:
@@ -61,7 +64,10 @@ def questions() -> dict[str, Tree | Reading]:
 
 
 def in_turn() -> Iterator[str]:
-    """The names of all questions, one of each lot after the other: who stops early has asked of everything."""
+    """The names of all questions, one of each lot after the other: who stops early has asked of everything.
+
+    Files of one feature are through early; those of two are one lot for each format.
+    """
     return (name for names in zip_longest(*lots()) for name in names if name is not None)
 
 

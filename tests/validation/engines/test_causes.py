@@ -19,7 +19,7 @@ from validation.engines.models.covering import scenes
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
 from validation.engines.report import compose
-from validation.engines.verdicts import RED, Cell
+from validation.engines.verdicts import RED, Cell, Verdict
 from validation.engines.workers import Job
 from validation.reporting import html, markdown
 from validation.reporting.provenance import Provenance
@@ -158,10 +158,32 @@ _OF_FREE, _OF_SERVOS = "what free joints have", "gear of servos at joints"
         ("newton", "scene 1: 2: hinge, 2: position, 2: jointinparent", "scene_qacc", _OF_SERVOS),
         ("newton", "scene 1: 0: hinge, 0: site, 0: velocity", "scene_qacc", None),
         ("newton", "scene 1: position sensors, 0: hinge", "scene_qacc", None),
+        ("pinocchio", "mjcf: eulerseq yxy + sections turned round", "link_poses", "compiler behind the bodies"),
+        ("pinocchio", "mjcf: inertia in full + sections turned round", "mass_matrix", None),
+        ("mink", "rotations, 2^-12 from half turns", "rotation_vector_rates", None),
+        ("mink", "rotations, 2^-27 from none", "rotation_vector_rates", "slopes of small rotation vectors"),
     ],
 )
 def test_causes_take_no_cell_without_their_features(engine: str, model: str, function: str, name: str | None) -> None:
     cell = Cell(engine, model, function, "wrong")
+    assert next((one.name for one in stated() if one.explains(cell)), None) == name
+
+
+@pytest.mark.parametrize(
+    ("engine", "model", "function", "verdict", "name"),
+    [
+        ("dart", "mjcf: dry friction", "joint_frictions", "wrong", "friction and springs of MJCF"),
+        ("dart", "mjcf: dry friction", "joint_frictions", "crashes", None),
+        ("pinocchio", "rotations, 2^-8 from none", "rotation_difference_dq2", "raises", None),
+        ("mink", "rotations, 2^-40 from none", "pose_difference", "imprecise", "logarithm of turns below 1e-10"),
+        ("mink", "rotations, 2^-17 from none", "pose_composed:lplus", "wrong", "placements by small turns"),
+        ("mink", "rotations, 2^-12 from half turns", "pose_composed:rplus", "wrong", None),
+    ],
+)
+def test_causes_take_no_cell_of_another_verdict(
+    engine: str, model: str, function: str, verdict: Verdict, name: str | None
+) -> None:
+    cell = Cell(engine, model, function, verdict)
     assert next((one.name for one in stated() if one.explains(cell)), None) == name
 
 
