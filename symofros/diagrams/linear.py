@@ -85,7 +85,8 @@ def linearised(
     sources = _sources(resolved, outputs)
     point = OperatingPoint.at(compiled, t, inputs or {}, parameters or {}, starts or {})
     linear = _Linear(compiled, point, sources)
-    found = linear.state_space()
+    with np.errstate(invalid="ignore", over="ignore"):  # What is not finite is refused in words.
+        found = linear.state_space()
     for name, matrix in (("A", found.A), ("B", found.B), ("C", found.C), ("D", found.D)):
         if not np.isfinite(matrix).all():
             remedy = "a state away from singular postures, and from roots and quotients of zero"
@@ -172,6 +173,8 @@ class _Linear:
     def _refuse_motion(self, matrices: Sequence[Array], change: Array) -> None:
         """Refuse a point that a cycle of the samples leaves for one with other matrices."""
         point, resolved = self.point, self.resolved
+        if not all(np.isfinite(matrix).all() for matrix in matrices):
+            return  # Refused as no number after the cycle, in any case.
         moved = point.moved(resolved, change, self.motion(point)[0])
         if _agree(matrices, self.matrices(moved)[0]):
             return

@@ -373,6 +373,10 @@ def test_what_has_no_linear_model_is_refused_with_its_remedy() -> None:
     spoken.add(Spoken(name="echo", heard=[], period=1e-3))
     spoken.outlets["y"] = "echo.y"
     refused(spoken, "block 'echo' is no formula")
+    rooted = scalar(blocks.Formula(name="f", formulas="sqrt(u)"))
+    rooted.add(blocks.Hold(name="late", period=1.0), u="x.y")
+    rooted.outlets["late_"] = "late.y"
+    refused(rooted, "A is not finite")
 
 
 def test_samples_that_nothing_depends_on_count_for_nothing() -> None:
