@@ -142,6 +142,7 @@ def test_scenes_have_the_causes_of_their_features(features: tuple[str, ...], fun
 
 
 _SEVERAL = "mass matrix of mimic joints beyond joints of several speeds"
+_HINGE_LAST = "slide before hinge"
 _OF_FREE, _OF_SERVOS = "what free joints have", "gear of servos at joints"
 
 
@@ -174,13 +175,17 @@ def test_causes_take_no_cell_without_their_features(engine: str, model: str, fun
     [
         ("dart", "mjcf: dry friction", "joint_frictions", "wrong", "friction and springs of MJCF"),
         ("dart", "mjcf: dry friction", "joint_frictions", "crashes", None),
+        ("drake", "mjcf: borne weights + slide", "link_poses", "wrong", None),
+        ("drake", f"mjcf: {_HINGE_LAST} + elements of a body turned round", "bias", "wrong", "two joints of a body"),
+        ("drake", f"mjcf: {_HINGE_LAST} + axis oblique", "bias", "wrong", None),
+        ("pinocchio", "mjcf: moments balanced + main class before childclass", "sizes", "raises", "classes of MJCF"),
         ("pinocchio", "rotations, 2^-8 from none", "rotation_difference_dq2", "raises", None),
         ("mink", "rotations, 2^-40 from none", "pose_difference", "imprecise", "logarithm of turns below 1e-10"),
         ("mink", "rotations, 2^-17 from none", "pose_composed:lplus", "wrong", "placements by small turns"),
         ("mink", "rotations, 2^-12 from half turns", "pose_composed:rplus", "wrong", None),
     ],
 )
-def test_causes_take_no_cell_of_another_verdict(
+def test_causes_take_no_cell_of_another_function_or_verdict(
     engine: str, model: str, function: str, verdict: Verdict, name: str | None
 ) -> None:
     cell = Cell(engine, model, function, verdict)
