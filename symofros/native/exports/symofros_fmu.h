@@ -341,11 +341,11 @@ static void fmu_recall_events(sym_instance *instance) {
     }
 }
 
-/* The twin <- the motion as it is at the begin of a step. Returns 0 where there is no twin. */
+/* The twin <- the motion at the begin of a step. Returns 0 without a twin, and once the log says that steps are too long. */
 static int fmu_twin_begin(fmu *f) {
     fmu_part from[FMU_PARTS], to[FMU_PARTS];
     int i, prepared = 1;
-    if (f->twin == NULL || f->kinetic == NULL) return 0;
+    if (f->twin == NULL || f->kinetic == NULL || f->steps_noted) return 0;
     fmu_parts(f->instance, from), fmu_parts(f->twin, to);
     for (i = 0; i < FMU_PARTS; ++i) {
         if (from[i].size == 0) continue;
