@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections import Counter
 from collections.abc import Callable, Iterable, Iterator
 from dataclasses import replace
+from fractions import Fraction
 from functools import cache, lru_cache, partial
 from typing import Any
 
@@ -14,13 +15,15 @@ from symofros.description.beams.beam import Beam
 from symofros.description.constraints import Closure
 from symofros.description.values import Value
 from symofros.expr.edges import Edge
-from symofros.expr.expression import evaluate
+from symofros.expr.expression import Expression, evaluate
 from symofros.expr.graph import Graph
 from symofros.mechanics.beams.fields import Form
+from symofros.mechanics.beams.integrals import at_station
+from symofros.mechanics.beams.second_order.deformation import deformation_of
 from symofros.mechanics.beams.theories import theory_of
 from symofros.mechanics.topology.tree import SpanningTree
 from symofros.runtime.beam_orders import OmittedStiffness
-from symofros.runtime.beams import ElasticBeam, ExactElasticBeam
+from symofros.runtime.beams import ElasticBeam, ExactElasticBeam, StationMoments
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 
@@ -127,6 +130,7 @@ def _numbers(beam: Beam, q: int, v: int, values: dict[str, float], in_series: in
         "EI_z": evaluate(judged.EI_z, values),
         "EI_y": evaluate(judged.EI_y, values),
         "omitted": _omitted(beam, values, in_series),
+        "station_moments": None if beam.elastic.is_exact else cache(partial(_station_moments, beam, values)),
     }
     angles = np.array(judged.angles)
     if judged.integration_error is None:
@@ -171,6 +175,29 @@ def _stiffness(beam: Beam, values: dict[str, float]) -> Array:
     """Elastic stiffness (n, n)."""
     g, energy = _strain_energy(beam, values)
     return np.array([[g.number(edge) for edge in row] for row in energy.second_derivatives()], dtype=np.float64)
+
+
+def _station_moments(beam: Beam, values: dict[str, float]) -> StationMoments:
+    """Moments by the linear terms of the curvatures (6), and weights of the stations."""
+    length, xi = evaluate(beam.length, values), np.array(beam.stations)
+    curvatures = np.zeros((len(xi), 3, beam.modes))
+    for k, field in enumerate(deformation_of(beam).curvatures):
+        for mono, function in field.terms.items():
+            if len(mono) == 1:
+                shape = np.array([float(function(Fraction(x))) for x in beam.stations])
+                curvatures[:, k, mono[0]] = length ** field.exponent(mono) * shape
+
+    def at(EI: Value, x: float) -> float:
+        return evaluate(at_station(EI, beam.length, x) if isinstance(EI, Expression) else EI, values)
+
+    stiffness = np.array([[at(EI, x) for EI in (beam.GJ, beam.EI_y, beam.EI_z)] for x in beam.stations]).reshape(-1, 3)
+    order = np.argsort(xi, kind="stable")
+    parts = np.empty(len(xi))
+    parts[order] = length * np.diff([0.0, *(0.5 * (xi[order][1:] + xi[order][:-1])), 1.0])
+    bends = curvatures.any(axis=(0, 2)) & (stiffness > 0.0)
+    weights = np.divide(parts[:, np.newaxis], stiffness, out=np.zeros_like(stiffness), where=bends)
+    moments = (stiffness[..., np.newaxis] * curvatures).reshape(-1, beam.modes)
+    return StationMoments(moments, weights.ravel(), evaluate(beam.damping, values))
 
 
 def _coupling(beam: Beam, values: dict[str, float]) -> Array:

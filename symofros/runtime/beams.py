@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from dataclasses import dataclass, replace
+from typing import NamedTuple
 
 import numpy as np
 import numpy.typing as npt
@@ -109,6 +110,20 @@ class BeamBending:
         return f"divide it into {count} beams joined end to end, or state theory: strain, which is geometrically exact"
 
 
+class StationMoments(NamedTuple):
+    """Torque and bending moments by small curvatures, at the stations of a beam's section forces, one after the other.
+
+    Attributes:
+        moments: T, My and Mz of each station by each elastic coordinate (3 s, n).
+        weights: Length nearest to the station over the stiffness (3 s); 0 of a direction without functions.
+        damping: Damping over stiffness [s].
+    """
+
+    moments: Array
+    weights: Array
+    damping: float
+
+
 @dataclass(frozen=True)
 class ElasticBeam:
     """One beam at given parameters, as far as its bending is to be judged.
@@ -126,6 +141,7 @@ class ElasticBeam:
         EI_z: Stiffness against bending in the x-y plane at mid-length [N m^2].
         EI_y: Stiffness against bending in the x-z plane at mid-length [N m^2].
         omitted: What its equations leave out of the stiffness under loads; None of a beam that leaves out nothing.
+        station_moments: Forms the moments at its stations; None of a rod.
     """
 
     name: str
@@ -140,6 +156,7 @@ class ElasticBeam:
     EI_z: float
     EI_y: float
     omitted: OmittedStiffness | None
+    station_moments: Callable[[], StationMoments] | None
 
     # Error up to which a run does not look for the step that bends a beam most: of what is stated, the last digit.
     NEGLIGIBLE = 1e-4

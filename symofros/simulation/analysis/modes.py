@@ -14,10 +14,11 @@ from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_
 from symofros.simulation.analysis.force_states import kink_notes
 from symofros.simulation.analysis.imbalance import imbalance_notes
 from symofros.simulation.analysis.kinematics.facing import refuse_opposite
-from symofros.simulation.analysis.rest_linearisation import matrix_at_rest
+from symofros.simulation.analysis.rest_linearisation import functions_of_modes, matrix_at_rest
 from symofros.simulation.analysis.rigid_motions import Complex, RigidMotions, rigid_motions
 from symofros.simulation.analysis.state_space import state_space
 from symofros.simulation.analysis.states import given_configuration, given_inputs
+from symofros.simulation.analysis.unresolved_modes import Vibrations, judges, resolution_notes, too_high
 
 # Share of its states of forces below which a mode's coordinates are rounding.
 _STILL = 1e-12
@@ -39,8 +40,11 @@ class Modes:
         shapes: Coordinates of each mode, scaled to a largest entry of 1 (nv, k); zeros where states of forces alone
             change.
         bendings: Bending of each beam in the state, with the error of its theory.
-        notes: Remarks: a state in which forces do not balance, beams whose theory errs by more than a per cent, forces
-            and rates of states of forces that have a kink.
+        notes: Remarks: a state in which forces do not balance, beams whose theory errs by more than a per cent or
+            whose functions are too few for a mode, forces and rates of states of forces that have a kink.
+        too_high: How far each frequency is above the one of beams with enough shape functions, relative (k): an
+            estimate (docs/theory/beams.md, section 10); NaN where there is none, as of rods and of what does not
+            oscillate.
         z_shapes: States of forces of each mode, as they change with `shapes` (nz, k); scaled to a largest entry of 1
             where they alone change.
     """
@@ -52,6 +56,7 @@ class Modes:
     bendings: tuple[BeamBending, ...] = ()
     notes: tuple[str, ...] = ()
     z_shapes: Complex = field(default_factory=lambda: np.zeros((0, 0), dtype=np.complex128))
+    too_high: Array = field(default_factory=lambda: np.zeros(0))
 
     def __str__(self) -> str:
         """A line a mode, in words: what decays or grows without oscillation has no frequency in Hz; then the notes."""
@@ -106,6 +111,9 @@ def modes(
     state = (given_configuration(model, q), v, vector("u", given_inputs(model, u), model.nu))
     refuse_opposite(model, state[0], state[2], par)
     states = np.zeros(model.nz) if z is None else vector("z", model.by_name("z", z), model.nz)
+    judged = judges(model, par)
+    if judged:
+        model.prepare("section_forces", *functions_of_modes(model, state[1]))
     A, basis, balanced = _linearised(model, *state, states, par, t)
     # Without constraints A holds the derivatives of the accelerations.
     slopes = None if model.nc else A[model.nv :, : model.nv]
@@ -113,7 +121,8 @@ def modes(
     q, v = (np.asarray(x) for x in model.carry(*state[:2], states))
     bendings = bendings_in_motion(moving, q, v, state[2], par, t, slopes)
     refuse_beyond(model, bendings, beam_limit, "the state of the modes")
-    inertia = _inertia(model, state[0], state[2], par)
+    M = model.mass_matrix(state[0], u=state[2], par=par) if model.has("mass_matrix") else np.eye(model.nv)
+    inertia = np.where(np.diagonal(M) > 0.0, np.diagonal(M), 1.0)
     s, changes, rigid = _motions(A, basis, inertia)
     others = np.flatnonzero(~rigid.zeros & (s.imag >= 0.0))
     order = [*rigid.chosen, *others[np.argsort(np.abs(s[others]), kind="stable")]]
@@ -124,6 +133,12 @@ def modes(
     values = model.parameter_values if par is None else model.checked_parameters(par)
     smooth = model.record.smooth_friction_notes(state[1], np.asarray(values))
     notes = bending_notes(bendings) + kink_notes(moving, q, v, state[2], par, t) + smooth
+    errors = np.full(len(s), np.nan)
+    if judged:
+        errors, by_beam = too_high(
+            model.with_precision("double"), (*state, states), par, t, Vibrations(s, changes[:, order], M, balanced)
+        )
+        notes += resolution_notes(s, errors, by_beam)
     if not balanced:
 
         def spectrum(q: Array, v: Array) -> Complex:
@@ -131,7 +146,7 @@ def modes(
             return _motions(A, basis, inertia)[0]
 
         notes = (*imbalance_notes(model.with_precision("double"), (*state, states), par, t, spectrum), *notes)
-    return Modes(s, size, damping, shapes, bendings, notes, z_shapes)
+    return Modes(s, size, damping, shapes, bendings, notes, z_shapes, errors)
 
 
 def _motions(A: Array, basis: Array, inertia: Array) -> tuple[Complex, Complex, RigidMotions]:
@@ -150,14 +165,6 @@ def _shapes(X: Complex, Z: Complex) -> tuple[Complex, Complex]:
     largest = np.take_along_axis(both, np.abs(both).argmax(axis=0)[None], axis=0)
     scale = np.where(largest == 0.0, 1.0, largest)
     return X / scale, Z / scale
-
-
-def _inertia(model: Model, q: Array, u: Array, par: ArrayLike | None) -> Array:
-    """Diagonal of the mass matrix; ones where it was not generated, or is not positive."""
-    if not model.has("mass_matrix"):
-        return np.ones(model.nv)
-    diagonal = np.asarray(np.diagonal(model.mass_matrix(q, u=u, par=par)), dtype=np.float64)
-    return np.where(diagonal > 0.0, diagonal, 1.0)
 
 
 def _linearised(

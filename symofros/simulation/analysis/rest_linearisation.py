@@ -16,6 +16,13 @@ _BALANCED = 1e-9
 _FUNCTIONS = ("rest_forces", "rest_stiffness", "rest_damping", "mass_matrix")
 
 
+def functions_of_modes(model: Model, v: Array) -> tuple[str, ...]:
+    """Functions that the linear model about a state with speeds v (nv) is likely to need, to be compiled together."""
+    if not model.nc and not model.nz and model.nv >= MANY and not np.any(v):
+        return _FUNCTIONS
+    return "forward_dynamics", "forward_dynamics_derivatives", "mass_matrix"
+
+
 def matrix_at_rest(model: Model, q: Array, u: Array, par: ArrayLike | None, t: float) -> Array | None:
     """A of x' = A x at v = 0, x = (along q, of v) (2 nv, 2 nv).
 

@@ -185,6 +185,11 @@ NOTES: Mapping[str, NoteKind] = {
         "loads give or take stiffness that the order of a beam's equations leaves out (`retain`, `foreshortening`)",
         "`retain: all`, or `first_order` where axial forces are left out",
     ),
+    "too few functions": NoteKind(
+        "beam '…' has too few shape functions for mode …: its frequency of … rad/s is too high by about … %…",
+        "the frequency of a mode is off by more than 5 %, as a beam's functions do not have its shape",
+        "more functions, or segments; or ignore the mode",
+    ),
     "no equilibrium": NoteKind(
         "the state is neither an equilibrium nor a steady motion: '…' accelerates by …",
         "modes are asked for at a state that moves on, to where the linearised equations are others",

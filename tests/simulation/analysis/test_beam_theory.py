@@ -82,8 +82,8 @@ def test_a_column_past_its_critical_load_has_no_bent_equilibrium() -> None:
 
 def test_modes_of_a_state_beyond_the_limit_are_refused() -> None:
     straight, bent = cantilever().neutral(), np.array([0.1, 0.0, 0.0])
-    assert not sf.modes(cantilever(), straight).notes
-    assert "'blade'" in sf.modes(cantilever(), bent).notes[0]
+    assert not any("theory errs" in note for note in sf.modes(cantilever(), straight).notes)
+    assert "beam 'blade' bends" in sf.modes(cantilever(), bent).notes[0]
     with pytest.raises(sf.BeamTheoryError, match="the state of the modes"):
         sf.modes(cantilever(), 10.0 * bent)
 

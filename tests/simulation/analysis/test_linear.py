@@ -2,6 +2,8 @@
 
 from __future__ import annotations
 
+import re
+
 import numpy as np
 import pytest
 
@@ -118,6 +120,8 @@ class TestModes:
         found = sf.modes(m, at.q, at.v)
         assert (found.eigenvalues.real.max() < 1e-2) == stable and not found.notes
 
+    # Notes on the beams, which these states have beside.
+    OF_BEAMS = re.compile("theory errs|too few shape functions")
     NO_EQUILIBRIUM = "the state is neither an equilibrium nor a steady motion"
 
     @pytest.mark.parametrize("name", ["double_pendulum", "rx90", "four_bar", "heavy_top", "flexible_pendulum"])
@@ -130,9 +134,10 @@ class TestModes:
             return sf.assemble(m, rest.q + change).q if m.nc else m.integrate(rest.q, change)
 
         rest = sf.equilibrium(m, GUESSES.get(name, m.integrate(m.neutral(), np.full(m.nv, 0.1))))
-        assert not sf.modes(m, rest.q).notes and not sf.modes(m, moved(1e-5)).notes
+        for near in (rest.q, moved(1e-5)):
+            assert all(self.OF_BEAMS.search(note) for note in sf.modes(m, near).notes)
         far = moved(0.6)
-        (note,) = (one for one in sf.modes(m, far, beam_limit=np.inf).notes if "theory errs" not in one)
+        (note,) = (one for one in sf.modes(m, far, beam_limit=np.inf).notes if not self.OF_BEAMS.search(one))
         a = m.forward_dynamics(far, np.zeros(m.nv), np.zeros(m.nu))
         k = int(np.abs(a).argmax())
         assert self.NO_EQUILIBRIUM in note and f"'{m.names.v[k]}' accelerates by {a[k]:.3g}," in note
@@ -158,5 +163,5 @@ class TestModes:
         beam = sf.Beam("b", hub, 1.0, 1.0, EI_z=1.0, bend_y=2, family="legendre")
         m = sf.compile(sf.System("blade", [beam], gravity=(0, 0, 0)))
         q, v = np.zeros(3), np.array([2.0, 0.0, 0.0])
-        assert not sf.modes(m, q, v).notes
+        assert all(self.OF_BEAMS.search(note) for note in sf.modes(m, q, v).notes)
         assert self.NO_EQUILIBRIUM in sf.modes(m, q, v, [1.0]).notes[0]

@@ -1,0 +1,74 @@
+"""Modes say how far their frequencies are too high by too few shape functions (docs/theory/beams.md, section 10)."""
+
+from __future__ import annotations
+
+import numpy as np
+import pytest
+
+import symofros as sf
+from symofros.description.beams.shapes import Family
+
+# beta L squared of the uniform cantilever.
+EXACT = np.array([3.5160152685, 22.034491565, 61.697214421, 120.90191605, 199.85953])
+TOO_FEW = "has too few shape functions for mode"
+
+
+def cantilever(functions: int, family: Family = "spline", mass: float = 0.0, root: str = "fixed") -> sf.Model:
+    """A uniform beam of unit stiffness, mass and length, with a mass at its tip."""
+    bodies: list[sf.Body] = [sf.Beam("b", sf.Joint("root", root), 1.0, 1.0, EI_z=1.0, bend_y=functions, family=family)]
+    if mass:
+        bodies.append(sf.RigidBody("m", sf.Joint("j", "fixed", parent="b", frame="tip"), sf.Inertia(mass)))
+    return sf.compile(sf.System("cantilever", bodies, gravity=(0, 0, 0)))
+
+
+@pytest.mark.parametrize(
+    ("functions", "family"), [(4, "spline"), (1, "spline"), (2, "hermite"), (4, "polynomial"), (6, "legendre")]
+)
+def test_the_estimate_is_the_error_within_a_factor_of_two(functions: int, family: Family) -> None:
+    found = sf.modes(cantilever(functions, family), np.zeros(functions))
+    shown = min(functions, len(EXACT))
+    error = found.frequencies[:shown] / EXACT[:shown] - 1.0
+    # Errors of a few thousandths of a per cent are those of the nine stations.
+    assert np.all(found.too_high[:shown] > 0.5 * error - 1e-4) and np.all(found.too_high[:shown] < 2.0 * error + 1e-3)
+    assert (found.too_high > 0.05).any() == any(TOO_FEW in note for note in found.notes)
+
+
+def test_the_fourth_mode_of_four_splines_bears_a_note() -> None:
+    (note,) = sf.modes(cantilever(4), np.zeros(4)).notes
+    assert note == (
+        "beam 'b' has too few shape functions for mode 3: its frequency of 251.9 rad/s is too high by about 82 %;"
+        " state more functions, or divide the beam into segments"
+    )
+
+
+def test_modes_that_the_functions_have_bear_none() -> None:
+    found = sf.modes(cantilever(4, "clamped_free"), np.zeros(4))
+    assert found.too_high.max() < 1e-3 and not found.notes
+
+
+@pytest.mark.parametrize("functions", [4, 10])
+def test_with_a_mass_at_the_tip_and_a_hinge(functions: int) -> None:
+    """Against the same with many functions; what is right to 1 % is below the note."""
+    for mass, root in ((5.0, "fixed"), (0.5, "revolute")):
+        some, many = (cantilever(n, family, mass, root) for n, family in ((functions, "spline"), (14, "legendre")))
+        found, exact = (sf.modes(model, model.neutral()) for model in (some, many))
+        compared = slice(int(root != "fixed"), functions)
+        error = found.frequencies[compared] / exact.frequencies[compared] - 1.0
+        estimate = found.too_high[compared]
+        assert np.all(estimate[error < 0.01] < 0.03) and np.all(estimate[error > 0.15] > 0.05)
+
+
+def test_a_stretched_blade_is_judged_on_its_deformed_shape() -> None:
+    """Centrifugal forces are in the moments by equilibrium."""
+    hub = sf.Joint("hub", "revolute", prescribed=True)
+    beam = sf.Beam("b", hub, 1.0, 1.0, EI_z=1.0, bend_y=6, family="legendre")
+    model = sf.compile(sf.System("rotor", [beam], gravity=(0, 0, 0)))
+    found = sf.modes(model, np.zeros(6), u=[0.0, 6.0, 0.0])
+    assert np.all(found.too_high[:3] < 0.01) and np.all(found.too_high[3:] > 0.05)
+
+
+def test_modes_that_do_not_oscillate_and_models_without_beams_are_not_judged() -> None:
+    hinged = cantilever(3, root="revolute")
+    assert np.isnan(sf.modes(hinged, hinged.neutral()).too_high[0])
+    body = sf.RigidBody("b", sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=(sf.Spring(50.0),)), sf.Inertia(2.0))
+    assert np.isnan(sf.modes(sf.compile(sf.System("s", [body])), [0.0]).too_high).all()
