@@ -98,6 +98,8 @@ def test_a_cause_behind_another_is_found_with_that_one_taken_out() -> None:
     [
         ("wat: it is wrong", "unknown entries"),
         ("offends:", "entries missing: .'offends'."),
+        ("functions:", "entries missing: .'functions'."),
+        ("functions: [bias, '.*']", "names the functions that it shows in"),
         ("fault: nowhere", "the name of a file"),
         ("thread: somewhere", "a thread is an address"),
         ("searched: ''", "says when no thread was found"),
@@ -107,6 +109,7 @@ def test_a_cause_behind_another_is_found_with_that_one_taken_out() -> None:
 )
 def test_files_that_break_a_rule_are_refused(tmp_path: Path, changed: str, said: str) -> None:
     good = {"name": "a", "what": "It is wrong.", "shows": "balls", "offends": "M.", "searched": '"2026-11-28"'}
+    good["functions"] = "[gravity]"
     name, _, value = changed.partition(":")
     path = tmp_path / "toy.yaml"
     rows = [f"{key}: {text}" for key, text in (good | {name: value}).items() if text]
@@ -128,7 +131,7 @@ def test_stated_causes_are_sentences_of_an_engine_that_is_there(path: Path) -> N
 @pytest.mark.parametrize(
     ("features", "function", "name"),
     [
-        (("0: hinge", "0: actearly"), "scene_actuator_force", "activations taken early"),
+        (("0: hinge", "0: actearly"), "scene_actuator_force", "actuators with actearly"),
         (("no spring", "0: hinge", "0: damper"), "scene_qacc", "springs or dampers that are disabled"),
         (("implicitfast", "0: hinge", "0: muscle"), "scene_qvel", "muscles in implicitfast"),
         (("implicitfast", "0: hinge", "0: ctrlrange"), "scene_qvel", "controls beyond their range in implicitfast"),
@@ -143,7 +146,7 @@ def test_scenes_have_the_causes_of_their_features(features: tuple[str, ...], fun
 
 _SEVERAL = "mass matrix of mimic joints beyond joints of several speeds"
 _HINGE_LAST = "slide before hinge"
-_OF_FREE, _OF_SERVOS = "what free joints have", "gear of servos at joints"
+_OF_FREE, _OF_SERVOS = "springs, dampers and armature of free joints", "gear of servos at joints"
 
 
 @pytest.mark.parametrize(
@@ -159,7 +162,7 @@ _OF_FREE, _OF_SERVOS = "what free joints have", "gear of servos at joints"
         ("newton", "scene 1: 2: hinge, 2: position, 2: jointinparent", "scene_qacc", _OF_SERVOS),
         ("newton", "scene 1: 0: hinge, 0: site, 0: velocity", "scene_qacc", None),
         ("newton", "scene 1: position sensors, 0: hinge", "scene_qacc", None),
-        ("pinocchio", "mjcf: eulerseq yxy + sections turned round", "link_poses", "compiler behind the bodies"),
+        ("pinocchio", "mjcf: eulerseq yxy + sections turned round", "link_poses", "compiler after worldbody"),
         ("pinocchio", "mjcf: inertia in full + sections turned round", "mass_matrix", None),
         ("mink", "rotations, 2^-12 from half turns", "rotation_vector_rates", None),
         ("mink", "rotations, 2^-27 from none", "rotation_vector_rates", "slopes of small rotation vectors"),
@@ -178,6 +181,11 @@ def test_causes_take_no_cell_without_their_features(engine: str, model: str, fun
         ("drake", "mjcf: borne weights + slide", "link_poses", "wrong", None),
         ("drake", f"mjcf: {_HINGE_LAST} + elements of a body turned round", "bias", "wrong", "two joints of a body"),
         ("drake", f"mjcf: {_HINGE_LAST} + axis oblique", "bias", "wrong", None),
+        ("newton", "mjcf: gravity aside", "gravity", "wrong", "gravity of MJCF"),
+        ("newton", "mjcf: gravity aside", "mass_matrix", "wrong", None),
+        ("dart", "mjcf: reference angle", "link_poses", "wrong", "poses of MJCF"),
+        ("dart", "mjcf: site turned", "link_poses", "wrong", None),
+        ("pybullet", "urdf: inertia in full", "bias", "wrong", None),
         ("pinocchio", "mjcf: moments balanced + main class before childclass", "sizes", "raises", "classes of MJCF"),
         ("pinocchio", "rotations, 2^-8 from none", "rotation_difference_dq2", "raises", None),
         ("mink", "rotations, 2^-40 from none", "pose_difference", "imprecise", "logarithm of turns below 1e-10"),

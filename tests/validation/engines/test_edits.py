@@ -74,7 +74,7 @@ def test_edits_state_drop_wrap_and_turn_round() -> None:
 
 
 def test_a_file_of_two_features_has_the_causes_of_each() -> None:
-    cause = Cause("drake", "c", "", "", "", trees=("urdf: one, written",))
+    cause = Cause("drake", "c", "", "", "", ("mass_matrix",), trees=("urdf: one, written",))
     for model, explained in (
         ("urdf: one + two, written", True),
         ("urdf: two + one", False),

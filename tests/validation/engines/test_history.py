@@ -43,7 +43,7 @@ def test_causes_are_named_by_engine_and_name_and_have_scripts_in_the_report() ->
     assert "pinocchio as pin" in proof.text and not proof.exception
     (cause,) = named(["frax/links without inertia"])
     assert proof_of(cause, data).exception == "AttributeError"
-    (two,) = named(["adam/two columns for one"])
+    (two,) = named(["adam/concatenation of two columns"])
     assert proof_of(two, data).exception == "RuntimeError"  # Its last line names a function: "Sparsity::horzcat: ".
     with pytest.raises(ValueError, match="no cause 'frax/fuss'; there are 'frax/"):
         named(["frax/fuss"])

@@ -33,7 +33,7 @@ class Cause:
         what: What is wrong, in one sentence.
         shows: Joints, trees or files that it shows in, in words.
         offends: The line of the engine's documentation, or the derivation, that its answers offend.
-        functions: Patterns of the functions' names.
+        functions: Patterns of the functions' names; what other functions of the same trees answer is not explained.
         trees: Patterns of the trees' names.
         verdicts: Verdicts of the cells.
         words: Pattern that is searched for in the cells' words.
@@ -51,8 +51,8 @@ class Cause:
     what: str
     shows: str
     offends: str
+    functions: tuple[str, ...]
     _: KW_ONLY
-    functions: tuple[str, ...] = (".*",)
     trees: tuple[str, ...] = (".*",)
     verdicts: tuple[str, ...] = RED
     words: str = ""
@@ -122,7 +122,7 @@ def read(path: Path) -> list[Cause]:
     """
     rows: list[dict[str, Any]] = _read(path)
     names = {field.name for field in fields(Cause)} - {"engine"}
-    needed = {"name", "what", "shows", "offends"}
+    needed = {"name", "what", "shows", "offends", "functions"}
     causes = []
     for row in rows:
         if unknown := row.keys() - names:
@@ -149,4 +149,5 @@ def _rules(cause: Cause) -> list[tuple[bool, str]]:
         (cause.known.endswith("searched )"), "`searched` says when no thread was found"),
         (bool(cause.correction) and cause.correction not in CORRECTIONS, f"a correction is one of {list(CORRECTIONS)}"),
         (bool(cause.last) and not cause.first, "a last bad release has a first one"),
+        (not cause.functions or _any(cause.functions, ""), "a cause names the functions that it shows in"),
     ]

@@ -21,7 +21,7 @@ def _acting() -> dict[str, Function]:
     tendons, actuators, states = ("tendons",), ("actuators",), ("activations",)
     return {
         "passive_forces": Function(
-            "forces of springs, dampers, compensated weights (nv)", lambda t, s: t.own.passive(s.q, s.v), passive
+            "forces of springs, dampers, gravity compensation (nv)", lambda t, s: t.own.passive(s.q, s.v), passive
         ),
         "tendon_lengths": Function("lengths of tendons (n)", lambda t, s: _column(t.own.lines(s.q), 0), tendons),
         "tendon_arms": Function("their derivatives (n, nv)", lambda t, s: _column(t.own.lines(s.q), 1), tendons),
@@ -51,7 +51,7 @@ def _acting() -> dict[str, Function]:
             "actuators' states after a step (na)", _of_states(activations.after_step), states
         ),
         "actuated_forces": Function(
-            "what they do along the speeds (nv)", lambda t, s: t.own.actuated(s.q, s.v), actuators
+            "generalized forces of actuators (nv)", lambda t, s: t.own.actuated(s.q, s.v), actuators
         ),
     }
 
@@ -130,7 +130,7 @@ def _measured() -> dict[str, Function]:
         "pushed_accelerations_dq": ("their derivative by q (nv, nv)", sensed.pushed_dq),
         "pushed_accelerations_dv": ("their derivative by v (nv, nv)", sensed.pushed_dv),
         "wrench_sensors": (
-            "force on the link and all it carries of what holds it, and its moment about the sensor (n, 6)",
+            "force that holds the link and its subtree, and its moment about the sensor (n, 6)",
             sensed.wrench_sensors,
         ),
     }

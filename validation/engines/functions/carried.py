@@ -12,7 +12,7 @@ def _wholes() -> dict[str, Function]:
     rows = {
         "mass_centre_velocity": ("velocity of the mass centre (3)", carried.centre_velocity),
         "mass_centre_acceleration": ("its acceleration (3)", carried.centre_acceleration),
-        "subtree_masses": ("masses of each link with all it carries (L)", carried.subtree_masses),
+        "subtree_masses": ("masses of the links' subtrees (L)", carried.subtree_masses),
         "subtree_centres": ("their mass centres (L, 3)", carried.subtree_centres),
         "subtree_centre_jacobians": ("their Jacobians (L, 3, nv)", carried.subtree_jacobians),
         "subtree_centre_velocities": ("their velocities (L, 3)", carried.subtree_velocities),
@@ -24,7 +24,7 @@ def _wholes() -> dict[str, Function]:
         ),
         "link_distances": (f"distances of the links' origins from {carried.AFAR} (L)", carried.distances),
         "carried_inertias": (
-            "momentum of each link with all it carries, as one body, for twists of its frame along its axes (L, 6, 6)",
+            "composite inertias of the links' subtrees, at each link's frame along its axes (L, 6, 6)",
             carried.carried_inertias,
         ),
         "link_regressors": (

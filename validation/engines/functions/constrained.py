@@ -29,7 +29,7 @@ def _constrained() -> dict[str, Function]:
         ),
         "constraint_velocity_products": Function("J' v (m)", lambda t, s: constraints.products(t, s.q, s.v)),
         "constraint_residuals": Function(
-            "what constraints are off by, at q2 (m): points' distance along world axes; vector part of the quaternion "
+            "violations of constraints at q2 (m): points' distance along world axes; vector part of the quaternion "
             "that turns the second frame into the first, in the second; lengths less those at zero",
             lambda t, s: constraints.residuals(t, s.q2),
         ),
@@ -100,7 +100,7 @@ def _limited() -> dict[str, Function]:
     """Functions of trees whose limits and dry friction act (`soft`)."""
     rows = {
         "limited_acceleration": ("accelerations (nv)", soft.acceleration),
-        "limiting_forces": ("what limits and friction do along the speeds (nv)", soft.forces),
+        "limiting_forces": ("generalized forces of limits and dry friction (nv)", soft.forces),
         "floor_forces": ("what each floor does to its ball (n)", soft.floor_forces),
         "limited_inverse": ("forces (nv) that inverse dynamics find at these accelerations: tau", lambda t, s: s.tau),
     }

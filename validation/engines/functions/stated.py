@@ -58,7 +58,7 @@ def _shares(t: Truth, s: Point) -> Exact:
 
 
 def _of_lines() -> dict[str, Function]:
-    """What readers make of tendons, actuators and borne weights."""
+    """What readers make of tendons, actuators and gravity compensation."""
     rows: dict[str, tuple[str, TruthOf]] = {
         "tendon_stiffnesses": ("force of tendons for a unit of length (n)", _each(lambda one: one.stiffness)),
         "tendon_dampings": ("force of tendons for a unit of their speed (n)", _each(lambda one: one.damping)),
@@ -79,7 +79,7 @@ def _of_lines() -> dict[str, Function]:
             "points of both sites of actuators between sites, in their links (nu, 6)",
             _every(lambda one: [x for end in one.ends for x in end.p]),
         ),
-        "weight_shares": ("part of their weights that links have borne (L)", _shares),
+        "weight_shares": ("gravity compensation of links, as part of their weights (L)", _shares),
     }
     return functions_of(rows, "files")
 

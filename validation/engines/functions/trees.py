@@ -28,7 +28,7 @@ TREES: dict[str, Function] = {
     "coriolis_symmetry": Function("C + C^T = dM/dt (nv, nv)", derived.mass_matrix_rate),
     "inverse_dynamics": Function("M a + h (nv)", lambda t, s: t.ID(s.q, s.v, s.a)),
     "joint_wrenches": Function(
-        "what holds each link with all it carries, at its origin along its axes (L, 6)", derived.joint_wrenches
+        "wrench that the joint exerts on each link, at its origin along its axes (L, 6)", derived.joint_wrenches
     ),
     "joint_wrenches_driven": Function(
         "joint_wrenches at the accelerations that tau makes (L, 6)", derived.driven(derived.joint_wrenches)
@@ -37,7 +37,7 @@ TREES: dict[str, Function] = {
         "joint_wrenches at rest, at the accelerations that tau makes (L, 6)", derived.from_rest
     ),
     "subtree_momenta": Function(
-        "momentum of each link with all it carries, about their mass centre (L, 6)", derived.subtree_momenta
+        "momentum of each link's subtree, about its mass centre (L, 6)", derived.subtree_momenta
     ),
     "forward_dynamics": Function("M^-1 (tau - h) (nv)", lambda t, s: t.FD(s.q, s.v, s.tau)),
     "kinetic_energy": Function("T = v^T M v / 2", lambda t, s: t.T(s.q, s.v)),

@@ -1,4 +1,4 @@
-"""Trees that forces of their own act on: dampers, springs, compensated weights, tendons, actuators."""
+"""Trees that forces of their own act on: dampers, springs, gravity compensation, tendons, actuators."""
 
 from __future__ import annotations
 
@@ -46,7 +46,7 @@ def _passive() -> list[Tree]:
         Tree("a damped free body", (body,)),
         Tree("a damped hinge on a damped free base", _carried(body)),
         Tree("borne weights", borne),
-        Tree("borne weights of fixed links", _borne_and_fixed()),
+        Tree("borne weights of fixed links", _compensated_and_fixed()),
     ]
 
 
@@ -72,8 +72,8 @@ def _carried(base: Link) -> tuple[Link, ...]:
     return base, link(np.random.default_rng(10), "b", 0, placed(np.random.default_rng(12), _DAMPED))
 
 
-def _borne_and_fixed() -> tuple[Link, ...]:
-    """Weights that are borne at links which don't move against the one that they hang on."""
+def _compensated_and_fixed() -> tuple[Link, ...]:
+    """Gravity compensation of links that are fixed to the one before."""
     links = _chain("borne and fixed", _HINGE, Joint("fixed"), _HINGE, Joint("fixed"))
     return tuple(replace(one, compensation=part) for one, part in zip(links, (0.0, 1.0, 0.25, 0.5), strict=True))
 
@@ -258,7 +258,7 @@ def _muscles() -> list[Tree]:
 
 
 def _states() -> list[Tree]:
-    """Actuators with states: integrators and filters, at the states' limits, taken early, of servos and of muscles."""
+    """Actuators with states: integrators and filters, at the states' limits, of actearly, of servos and of muscles."""
     links = _chain("actuators", _DAMPED, _SLIDE, _SPRUNG)
     servo = Actuator("b", gear=0.5, gain=6.0, bias=(0.0, -6.0, 0.0), control=-0.5)
     general = Actuator("c", gear=-1.5, gain=0.5, bias=(0.25, -1.0, -0.75), control=2.0, control_limits=(-1.0, 1.0))

@@ -284,7 +284,7 @@ _LIMITED = (
 _BY_HAND = ("range, limited by hand", "range without limits: limited false, autolimits false")
 # What has no meaning or none that is documented: springs and ranges of balls, bounds and balance of inertia that is no
 # diagonal; compiled numbers of what does not move.
-NEVER: list[Pair] = [
+NEVER: tuple[Pair, ...] = tuple(
     frozenset(pair)
     for pair in (
         *((one, factor) for one in (*_BALLS, "fixed body") for factor in ("limits", "drives")),
@@ -305,7 +305,7 @@ NEVER: list[Pair] = [
         *(("mass bounded", other) for other in ("geoms",)),
         *(("moments balanced", other) for other in ("inertia", "geoms")),
     )
-]
+)
 
 
 @cache

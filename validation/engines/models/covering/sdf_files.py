@@ -333,7 +333,7 @@ _TURNED_JOINTS = (
     "a frame for child",
 )
 # What means nothing, or what no page states.
-NEVER: list[Pair] = [
+NEVER: tuple[Pair, ...] = tuple(
     frozenset(pair)
     for pair in (
         *((one, other) for one in ("ball", "fixed link with mass") for other in ("axis", "losses", "limits")),
@@ -346,7 +346,7 @@ NEVER: list[Pair] = [
         ("pose relative to its joint", "first kind"),
         ("ball first", "first joint relative to the model"),
     )
-]
+)
 
 
 @cache

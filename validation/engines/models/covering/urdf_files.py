@@ -285,7 +285,7 @@ FEATURES: Features = {
     },
 }
 # What the format leaves open, or has no meaning: limits and losses of what is fixed, a plane along another axis.
-NEVER: list[Pair] = [
+NEVER: tuple[Pair, ...] = tuple(
     frozenset(pair)
     for pair in (
         *(("fixed link with mass", factor) for factor in ("losses", "limits", "mimic", "axis", "besides")),
@@ -302,7 +302,7 @@ NEVER: list[Pair] = [
         ("joints named as their links", "mimic beyond a joint"),
         ("joints named as their links", "besides"),
     )
-]
+)
 
 
 @cache

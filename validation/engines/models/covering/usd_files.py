@@ -199,13 +199,13 @@ FEATURES: Features = {
     },
 }
 # What has no meaning: limits of what they are none of; axes of what has none.
-NEVER: list[Pair] = [
+NEVER: tuple[Pair, ...] = tuple(
     frozenset(pair)
     for pair in (
         *((one, factor) for one in ("ball", "fixed") for factor in ("limits", "axis")),
         ("ball", "frames"),
     )
-]
+)
 
 
 @cache

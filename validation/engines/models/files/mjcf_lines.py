@@ -1,4 +1,4 @@
-"""MJCF: tendons, actuators, borne weights; sections that are stated twice (mujoco.readthedocs.io, XML reference)."""
+"""MJCF: tendons, actuators, gravity compensation; sections that are stated twice (mujoco.readthedocs.io, XML reference)."""
 
 from __future__ import annotations
 
@@ -133,7 +133,7 @@ def _actuators() -> Iterator[tuple[str, Reading]]:
 
 
 def _sections() -> Iterator[tuple[str, Reading]]:
-    """Sections that are stated twice, which add to each other; borne weights."""
+    """Sections that are stated twice, which add to each other; gravity compensation."""
     geared = [hung(one, armature=(0.5,)) for one in _LINKS]
     twice = '<default><joint armature="0.5"/></default><default><geom density="500"/></default>'
     yield _of("two sections of defaults", file(head=RADIAN + twice), READ, tuple(geared))

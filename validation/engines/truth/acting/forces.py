@@ -1,4 +1,4 @@
-"""Forces that a tree states of itself, in many digits: dampers, springs, compensated weights, tendons, actuators.
+"""Forces that a tree states of itself, in many digits: dampers, springs, gravity compensation, tendons, actuators.
 
 With l(q) the length of a tendon and J its derivative along the speeds, e the force of an actuator at the control u or,
 where it has one, the state w,
@@ -105,7 +105,7 @@ class Forces:
         return Tendon("coupling", (End(actuator.link),), (1.0,))
 
     def passive(self, q: Exact, v: Exact) -> Exact:
-        """What springs, dampers, tendons and compensated weights do (nv)."""
+        """What springs, dampers, tendons and gravity compensation do (nv)."""
         Q = -self.damping * v - self.stiffness * self.offsets(q)
         for tendon, (length, J) in zip(self.tree.tendons, self.lines(q), strict=True):
             stiffness, damping, rest = exact((tendon.stiffness, tendon.damping, tendon.rest))
