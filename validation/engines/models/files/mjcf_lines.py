@@ -1,4 +1,4 @@
-"""MJCF: tendons, actuators, gravity compensation; sections that are stated twice (mujoco.readthedocs.io, XML reference)."""
+"""MJCF: tendons, actuators, gravity compensation; sections stated twice (mujoco.readthedocs.io, XML reference)."""
 
 from __future__ import annotations
 

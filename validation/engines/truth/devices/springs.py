@@ -1,4 +1,4 @@
-"""Springs and dampers by polynomials, of joints, balls, free bodies and tendons; bodies in a fluid; gravity compensation.
+"""Springs and dampers by polynomials, of joints, balls, free bodies, tendons; bodies in a fluid; gravity compensation.
 
 A polynomial a, b, c of the displacement y makes -(a y + b y^2 + c y^3), of the speed -(a v + b v |v| + c v^3)
 (Computation, "Polynomial forces"). A time constant T and a damping ratio r make m / (T r)^2 and 2 m / T
