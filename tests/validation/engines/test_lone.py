@@ -12,7 +12,7 @@ from validation.engines.causes.cause import stated
 from validation.engines.interface import STEP, Slot, Tree
 from validation.engines.matrix import SEED, Truths, cells, judged
 from validation.engines.models import single
-from validation.engines.models.files import mjcf_lines, usd
+from validation.engines.models.files import mjcf_lines, urdf, usd
 from validation.engines.plugins import OWN
 from validation.engines.proving.pieces import Layout
 from validation.engines.truth import derived, steps
@@ -88,6 +88,21 @@ def test_a_default_that_is_forgotten_is_a_red_cell(function: str) -> None:
     (want,), (given,) = (list(judged(OWN["mujoco"], job, Truths())) for job in jobs)
     assert want.want is not None and want.cell.verdict == "right"
     assert judge("planted", one.tree, function, np.asarray(given.answer.value), want.want).verdict == "wrong"
+
+
+def test_a_mass_that_is_read_where_none_is_stated_is_a_red_cell() -> None:
+    one = urdf.files()["urdf: mass without value"]
+    for text, verdict in ((one.text, "right"), (one.text.replace("<mass/>", '<mass value="1"/>'), "wrong")):
+        job = Job("yourdfpy", one.tree, ("link_bodies",), SEED, form="urdf", text=text)
+        assert [found.cell.verdict for found in judged(OWN["yourdfpy"], job, Truths())] == [verdict]
+
+
+def test_gravity_that_a_reader_leaves_out_shows_where_it_reads_no_masses() -> None:
+    one = LINES["mjcf: gravity of unit masses"]
+    job = Job("dart", one.tree, ("mass_matrix", "bias"), SEED, form="mjcf", text=one.text)
+    cells = [found.cell for found in judged(OWN["dart"], job, Truths())]
+    assert [cell.verdict for cell in cells] == ["right", "wrong"]
+    assert next(cause.name for cause in stated() if cause.explains(cells[1])) == "gravity of MJCF"
 
 
 @pytest.mark.parametrize("name", [name for name, tree in SINGLE.items() if tree.asked in ("wheels", "held distances")])

@@ -11,6 +11,7 @@ def _placements() -> dict[str, Function]:
     rows = {
         "pose_composed": ("X Y (12)", poses.composed),
         "pose_unset": ("a placement as it is before anybody sets it: zeros and rows of 1 (12)", poses.unset),
+        "pose_drawn": ("position of a random placement within bounds of no width about v (3)", poses.drawn),
         "pose_aligned": (
             "X of points and their places under it, by least squares, however each counts (12)",
             poses.aligned,
@@ -110,6 +111,8 @@ def _lines() -> dict[str, Function]:
             lines.plane_of_lines,
         ),
         "screw_pitch": ("advance for a radian of the twist (a; v + (4, -8, 8)) (1)", lines.screw_pitch),
+        "screw_unit": ("the twist (a; v + (4, -8, 8)) for a radian (6)", lines.screw_unit),
+        "screw_unit_sliding": ("the twist (v + (4, -8, 8); 0) for a metre (6)", lines.screw_unit_sliding),
         "screw_line": ("moment and unit direction of the line that it turns about (6)", lines.screw_line),
         "screw_pole": ("the point of that line nearest to the origin (3)", lines.screw_pole),
         "screw_of_line": ("twist of unit angular part about the first line, of pitch 3/8 (6)", lines.screw_of_line),

@@ -61,6 +61,9 @@ def _flat(of: str) -> str:
 WAYS |= ways_of(f"""
 == pose_composed | SE3 * SE3 | {_X}{_flat("(X * Y).A")}
 == pose_unset | SE3 | import spatialmath as cls\n{_flat("cls.SE3().A")}
+== pose_drawn | SE3.Rand
+import spatialmath as cls
+value = np.ravel(cls.SE3.Rand(xrange=(v[0], v[0]), yrange=(v[1], v[1]), zrange=(v[2], v[2])).t)
 == pose_inverse | SE3.inv | {_X}{_flat("X.inv().A")}
 == pose_inverse:trinv | trinv | {_T}{_flat("sm.trinv(T)")}
 == pose_relative | SE3 / SE3 | {_X}{_flat("(X.inv() / Y.inv()).A")}
@@ -161,6 +164,8 @@ import spatialmath as cls
 == plane_of_points:LinePoint | Plane3.LinePoint | {_LINE}P = cls.Plane3.LinePoint(L, tau)\n{_DISTANCE}
 == plane_of_lines | Plane3.TwoLines | {_LINE}P = cls.Plane3.TwoLines(L, M)\n{_DISTANCE}
 == screw_pitch | Twist3.pitch | {_SCREW}value = [{_CALLED.format(of="S.pitch")}]
+== screw_unit | Twist3.unit | {_SCREW}value = S.unit().S
+== screw_unit_sliding | Twist3.unit | {_SCREW}value = cls.Twist3(v + away, 0 * v).unit().S
 == screw_line | Twist3.line | {_SCREW}L = S.line()\n{_MOMENT.format(of="L")}
 == screw_pole | Twist3.pole | {_SCREW}value = {_CALLED.format(of="S.pole")}
 == screw_of_line | Twist3.UnitRevolute

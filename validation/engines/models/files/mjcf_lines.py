@@ -5,9 +5,9 @@ from __future__ import annotations
 from collections.abc import Iterator
 from dataclasses import replace
 
-from ...interface import Actuator, End, Link, Tendon, Tree
+from ...interface import ORIGIN, Actuator, End, Link, Tendon, Tree
 from .mjcf import FIRST, JOINT_A, JOINT_B, MA, MB, RADIAN, file
-from .readers import ACTUATORS, NEXT, READ, TENDONS, Reading, hung
+from .readers import ACTUATORS, IDENTITY, NEXT, READ, TENDONS, Reading, hung
 
 _JOINTS = ('<joint name="a" axis="0 0 1"/>' + MA, '<joint name="b" axis="0 1 0"/>' + MB)
 _LINKS = (FIRST, NEXT)
@@ -146,6 +146,13 @@ def _sections() -> Iterator[tuple[str, Reading]]:
     whole = f'{RADIAN}<option gravity="1 -2 -3"/><option timestep="0.25"/>'
     title = "mjcf: two sections of options"
     yield title, Reading("mjcf", file(head=whole), Tree(title, _LINKS, gravity=(1.0, -2.0, -3.0)))
+    # Of 1 kg and unit moments, as readers take that read no masses: gravity shows alone.
+    plain = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
+    slides = tuple(one.replace("<joint", '<joint type="slide"') + plain for one in (JOINT_A, JOINT_B))
+    unit = tuple(replace(hung(one, kind="prismatic"), mass=1.0, com=ORIGIN, inertia=IDENTITY) for one in _LINKS)
+    title = "mjcf: gravity of unit masses"
+    text = file(*slides, RADIAN + '<option gravity="1 -2 -3"/>')
+    yield title, Reading("mjcf", text, Tree(title, unit, gravity=(1.0, -2.0, -3.0)))
     borne = tuple(replace(one, compensation=part) for one, part in zip(_LINKS, (0.25, 1.0), strict=True))
     weights = file(JOINT_A + MA, JOINT_B + MB, at=('gravcomp="0.25"', 'gravcomp="1"'))
     yield _of("borne weights", weights, ("weight_shares",), borne)

@@ -8,7 +8,7 @@ from functools import partial
 
 import numpy as np
 
-from ...interface import Array, End, Joint, Vector, rows
+from ...interface import ORIGIN, Array, End, Joint, Vector, rows
 from . import readers
 from .readers import (
     ASKEW,
@@ -139,6 +139,15 @@ def _sensed() -> Iterator[tuple[str, Reading]]:
         yield title, replace(read, tree=replace(read.tree, sensors=frames))
 
 
+def _unstated() -> Iterator[tuple[str, Reading]]:
+    """A last link, fixed, with the mass that the schema of URDF has where the value is left out: zero."""
+    none = _INERTIA.replace("0.2", "0").replace("0.3", "0").replace("0.4", "0")
+    inertial = f"<inertial><mass/>{none}</inertial>"
+    stated = _chain(_FIRST, _SECOND, _FIXED, links=(_A, _B, f'<link name="c">{inertial}</link>'))
+    empty = replace(_REST, name="c", parent=1, mass=0.0, com=ORIGIN, inertia=diagonal(0.0, 0.0, 0.0))
+    yield _of("mass without value", stated, BODY, NEXT, empty, asked=("link_bodies",))
+
+
 def files() -> dict[str, Reading]:
     """All of them, by name."""
     return dict(
@@ -147,5 +156,6 @@ def files() -> dict[str, Reading]:
             *_from_shapes(),
             *_shaped(),
             *_sensed(),
+            *_unstated(),
         ]
     )

@@ -103,6 +103,18 @@ def screw_pitch(t: Truth, s: Point) -> Exact:
     return np.array([u @ w / (w @ w)])
 
 
+def screw_unit(t: Truth, s: Point) -> Exact:
+    """The twist (a; v + AWAY) for a radian (6)."""
+    u, w = _screw(s)
+    return np.concatenate([u, w]) / root(w @ w)
+
+
+def screw_unit_sliding(t: Truth, s: Point) -> Exact:
+    """The twist (v + AWAY; 0) for a metre (6)."""
+    _, w = _screw(s)
+    return np.concatenate([normalised(w), 0 * w])
+
+
 def screw_line(t: Truth, s: Point) -> Exact:
     """Moment and direction of the line that it turns about (6)."""
     u, w = _screw(s)

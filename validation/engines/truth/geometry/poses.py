@@ -75,6 +75,11 @@ def aligned(t: Truth, s: Point) -> Exact:
     return flat(*first(t, s))
 
 
+def drawn(t: Truth, s: Point) -> Exact:
+    """The position of a random placement within bounds of no width about v (3)."""
+    return s.v
+
+
 def unset(t: Truth, s: Point) -> Exact:
     """A placement that nobody has set (12)."""
     return flat(eye(3), zeros(3))

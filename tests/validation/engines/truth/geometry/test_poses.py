@@ -60,6 +60,7 @@ _TWIST = np.array([*_STATE.v, *_STATE.v2])
 _EXPECTED = {
     "pose_composed": _flat(_X @ _Y),
     "pose_unset": _flat(np.eye(4)),
+    "pose_drawn": _STATE.v,
     "pose_inverse": _flat(np.asarray(np.linalg.inv(_X), dtype=float)),
     "pose_relative": _flat(_APART),
     "pose_of_point": (_X @ [*_STATE.v, 1.0])[:3],
@@ -171,6 +172,9 @@ def test_screws_turn_about_their_lines() -> None:
     for x in (_points(_of("screw_line"))[0], _of("screw_pole")):
         assert np.allclose(u + np.cross(w, x), _of("screw_pitch")[0] * w)
     assert abs(_of("screw_pole") @ w) < 1e-12
+    unit, sliding = _of("screw_unit"), _of("screw_unit_sliding")
+    assert np.allclose(np.linalg.norm(w) * unit, [*u, *w]) and np.linalg.norm(unit[3:]) == pytest.approx(1.0)
+    assert np.allclose(sliding, [*unit[3:], 0.0, 0.0, 0.0])
     twist = _of("screw_of_line")
     assert np.allclose(twist[:3] + np.cross(twist[3:], _STATE.a), 0.375 * twist[3:])
     assert np.linalg.norm(twist[3:]) == pytest.approx(1.0)
