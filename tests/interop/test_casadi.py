@@ -31,20 +31,6 @@ def state(model: sf.Model, third: int) -> list[np.ndarray]:
     return [*(rng.standard_normal(size) for size in (model.nq, model.nv, third)), model.parameter_values]
 
 
-@pytest.mark.parametrize("name", ["forward_dynamics", "inverse_dynamics"])
-def test_casadi_values_and_jacobians_match_the_model(dynamics: Any, model: sf.Model, name: str) -> None:
-    given = state(model, model.nu if name == "forward_dynamics" else model.nv)
-    right = getattr(model, name)(*given[:3])
-    np.testing.assert_allclose(np.array(dynamics.functions[name](*given)).ravel(), right, rtol=1e-12)
-    slopes = dynamics.functions[name].jacobian()(*given, right)
-    derivatives = [*getattr(model, f"{name}_derivatives")(*given[:3])]
-    if name == "inverse_dynamics":
-        derivatives.append(model.mass_matrix(given[0]))
-    derivatives.append(getattr(model, f"{name}_by_par")(*given[:3]))
-    for slope, wanted in zip(slopes, derivatives, strict=True):
-        np.testing.assert_allclose(np.array(slope), wanted, rtol=1e-12, atol=1e-12)
-
-
 def lagrangian_hessians(f: Any, options: dict[str, Any], given: list[np.ndarray], weights: np.ndarray) -> np.ndarray:
     """Second derivatives of weights . f by all inputs, by CasADi from what the function offers."""
     f = casadi.external(f[0], f[1], options)
@@ -52,38 +38,6 @@ def lagrangian_hessians(f: Any, options: dict[str, Any], given: list[np.ndarray]
     parts = casadi.vertsplit(x, [0, *np.cumsum([len(each) for each in given]).tolist()])
     H, _ = casadi.hessian(casadi.dot(casadi.DM(weights), f(*parts)), x)
     return np.array(casadi.Function("H", [x], [H])(np.concatenate(given)))
-
-
-@pytest.mark.parametrize("name", ["forward_dynamics", "inverse_dynamics", "frame_position tip"])
-def test_hessians_are_the_models_and_differences_of_casadis_gradients(model: sf.Model, name: str) -> None:
-    dynamics = sf.interop.casadi.Dynamics(MODELS["cart_pole"], frames=["tip"])
-    given = state(model, model.nv if name == "inverse_dynamics" else model.nu)
-    given = [given[0], given[3]] if name.startswith("frame") else given
-    rng = np.random.default_rng(4)
-    weights = rng.standard_normal(3 if name.startswith("frame") else model.nv)
-    where = dynamics.names[name], str(dynamics.library)
-    exact = lagrangian_hessians(where, {}, given, weights)
-    frame, base = ("tip", "frame_position") if name.startswith("frame") else ("", name)
-    cotangent = {"forward_dynamics": "a_bar", "inverse_dynamics": "tau_bar", "frame_position": "p_WF_bar"}[base]
-    groups = {"forward_dynamics": "q v u par", "inverse_dynamics": "q v a par", "frame_position": "q par"}[base].split()
-    weighed = {cotangent: weights} | ({"lam_bar": np.zeros(0)} if base == "forward_dynamics" else {})
-    (right,) = model.evaluate(f"{base}_hessian", frame, **dict(zip(groups, given, strict=True)), **weighed)
-    np.testing.assert_allclose(exact, right, rtol=1e-12, atol=1e-12)
-    # Central differences at two steps: their errors of second order cancel.
-    coarse, fine = (differences_of_gradient(where, given, weights, step) for step in (4e-4, 2e-4))
-    np.testing.assert_allclose(exact, (4 * fine - coarse) / 3, rtol=0, atol=1e-9 * np.abs(exact).max())
-
-
-def differences_of_gradient(where: tuple[str, str], given: list[np.ndarray], weights: np.ndarray, h: float) -> Any:
-    """Central differences of the gradient that CasADi gets of a function, by all inputs; its own are good to 1e-7."""
-    gradient = casadi.external(f"adj1_{where[0]}", where[1])
-    ends = np.cumsum([len(each) for each in given])[:-1]
-
-    def at(x: np.ndarray) -> np.ndarray:
-        return np.array(casadi.vertcat(*gradient(*np.split(x, ends), np.zeros(len(weights)), weights))).ravel()
-
-    x = np.concatenate(given)
-    return np.column_stack([(at(x + step) - at(x - step)) / (2 * h) for step in h * np.eye(len(x))])
 
 
 def test_structural_zeros_of_hessians_are_left_out(dynamics: Any) -> None:

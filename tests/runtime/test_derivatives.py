@@ -1,9 +1,7 @@
-"""Derivatives of dynamics in C: against Pinocchio, against differences, against their twin in NumPy."""
+"""Derivatives of dynamics in C: against differences, against their twin in NumPy, by every solver."""
 
 from __future__ import annotations
 
-from collections.abc import Callable
-from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -14,12 +12,10 @@ import symofros as sf
 from reference_models import MODELS
 from reference_models.rigid.chain import chain
 from symofros.compiler import Compilation
-from tests.late import require
 from tests.models import sampled, state_of, system
-from validation.adapters.pinocchio import tree as pin_adapter
-from validation.inputs.cases import robot_case
+from tests.validation.subjects import assert_agrees
+from validation.procedures.equations import analyses
 
-pin = require("pinocchio", "validation")
 # State: guesses that assembly closes, or none for trees.
 CLOSED = {
     "four_bar": [1.2, -1.2, 1.2],
@@ -43,44 +39,6 @@ def state(name: str, seed: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     return state_of(model(name), CLOSED.get(name), seed)
 
 
-def sixth(function: Callable[[float], np.ndarray], step: float) -> np.ndarray:
-    """The derivative at 0 by a central difference of sixth order."""
-    weights = ((1, 3 / 4), (2, -3 / 20), (3, 1 / 60))
-    return np.asarray(sum(w * (function(k * step) - function(-k * step)) for k, w in weights) / step)
-
-
-@pytest.mark.parametrize(
-    ("robot", "backend"),
-    [
-        pytest.param("ur5", "c", marks=pytest.mark.slow),
-        ("panda", "c"),
-        pytest.param("talos", "interpreter", marks=pytest.mark.slow),
-        pytest.param("talos", "c", marks=pytest.mark.slow(minutes=3)),
-    ],
-)
-def test_forward_dynamics_derivatives_match_pinocchio(robot: str, backend: str) -> None:
-    """Pinocchio's recursive derivatives of its articulated-body algorithm: another method for the same numbers."""
-    subject = robot_case(robot).load()
-    bodies = [replace(b, joint=b.joint and replace(b.joint, elements=())) for b in subject.system.bodies]
-    subject = replace(subject, system=replace(subject.system, bodies=tuple(bodies)))
-    options = sf.Options(("forward_dynamics_derivatives",), backend=backend)  # type: ignore[arg-type]
-    m = sf.compile(subject.system, options)
-    engine = pin_adapter.build(subject).model
-    rng = np.random.default_rng(0)
-    q, v = m.random_state(rng)
-    u = rng.normal(size=m.nu)
-    actuated = slice(m.nv - m.nu, m.nv)
-    tau = np.zeros(m.nv)
-    tau[actuated] = u
-    data = engine.createData()
-    pin.computeABADerivatives(engine, data, q, v, tau)
-    inverse = np.triu(data.Minv) + np.triu(data.Minv, 1).T
-    for ours, theirs in zip(
-        m.forward_dynamics_derivatives(q, v, u), (data.ddq_dq, data.ddq_dv, inverse[:, actuated]), strict=True
-    ):
-        assert np.abs(ours - theirs).max() < 1e-10 * np.abs(theirs).max()
-
-
 @pytest.mark.parametrize("name", sampled(CASES, [name for name in CASES if name not in LARGE]))
 def test_c_derivatives_match_the_interpreter(name: str) -> None:
     q, v, u = state(name)
@@ -95,18 +53,8 @@ def test_c_derivatives_match_the_interpreter(name: str) -> None:
     sampled(PARAMETRISED, [name for name in PARAMETRISED if name not in LARGE]),
 )
 def test_parameter_derivatives_match_differences(name: str) -> None:
-    m = model(name)
-    q, v, u = state(name)
-    a, par = np.random.default_rng(1).normal(size=m.nv), np.array(list(m.parameters.values()))
-    # Sixth order, so that rounding is what is left; parameters are of the order of one.
-    step = 1e-3
-    for exact, function in (
-        (m.forward_dynamics_by_par(q, v, u), lambda p: m.forward_dynamics(q, v, u, par=p)),
-        (m.inverse_dynamics_by_par(q, v, a), lambda p: m.inverse_dynamics(q, v, a, par=p)),
-    ):
-        numeric = np.array([sixth(lambda s: function(par + s * e), step) for e in np.eye(m.npar)]).T  # noqa: B023
-        assert exact.shape == (m.nv, m.npar)
-        assert np.abs(exact - numeric).max() < 1e-7 * max(1.0, np.abs(numeric).max())
+    """And those by the state."""
+    assert_agrees(analyses.differentiated, system(name))
 
 
 def test_derivatives_accept_batches_and_parameters() -> None:

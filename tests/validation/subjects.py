@@ -13,11 +13,19 @@ from validation.inputs.frames import chosen_frames
 from validation.inputs.sampling import sample
 from validation.mechanics.assembly import Assembly, assemble
 from validation.mechanics.geometry import Array
+from validation.procedures.catalogue import Procedure, first_scene
 
 UNIT = sf.Inertia(1.0, (0.1, -0.2, 0.3), (0.5, 0.6, 0.7, 0.01, 0.02, 0.03))
 
 # One of every joint that moves, a free joint on a moving body among them.
 EVERY_KIND = ("free", "revolute", "ball", "prismatic", "free", "continuous")
+
+
+def assert_agrees(procedure: Procedure, system: sf.System) -> None:
+    """Every cell of a procedure of the harness keeps its tolerance, at a random state of a system, interpreted."""
+    cells = list(procedure(first_scene(system, assemble(system), "interpreter")))
+    wrong = [cell for cell in cells if not cell.error <= cell.tolerance]
+    assert cells and not wrong, wrong
 
 
 def subject_of(system: sf.System) -> Subject:

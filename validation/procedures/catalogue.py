@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from collections.abc import Callable, Iterator, Mapping
 from dataclasses import dataclass, replace
+from typing import Literal
 
 import numpy as np
 
@@ -239,9 +240,9 @@ def row(label: str, cell: Cell) -> Comparison:
     )
 
 
-def first_scene(system: sf.System, assembly: Assembly) -> Scene:
+def first_scene(system: sf.System, assembly: Assembly, backend: Literal["c", "interpreter"] = "c") -> Scene:
     """A model at a random state, assembled, with constant inputs."""
-    model = sf.compile(system)
+    model = sf.compile(system, sf.Options(backend=backend))
     q, v = model.random_state(np.random.default_rng(SEED))
     if model.nc:
         start = sf.assemble(model, q, v)
@@ -249,4 +250,4 @@ def first_scene(system: sf.System, assembly: Assembly) -> Scene:
     if bool(system.beams):  # Small, as its theory asks for.
         q, v = SMALL * q, SMALL * v
     u = np.linspace(0.3, 0.5, model.nu)
-    return Scene(model, system, Manifold.of(assembly), q, v, lambda *_: u, u)
+    return Scene(model, system, Manifold.of(assembly), q, v, lambda *_: u, u, backend=backend)

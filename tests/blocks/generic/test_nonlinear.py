@@ -6,7 +6,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
-from symofros.blocks import DeadZone, LookupTable, LookupTable2D, Quantizer, RateLimit, Relay, Saturation, Sine, Switch
+from symofros.blocks import DeadZone, LookupTable, LookupTable2D, Quantizer, RateLimit, Relay, Saturation, Switch
 from tests.blocks.support import STEP, run
 from tests.late import late
 
@@ -45,17 +45,6 @@ def test_a_sampled_relay_keeps_its_state() -> None:
     u = [0.5, 1.0, 0.5, 0.1, 0.0, 0.5, 2.0, -1.0]
     relay = Relay(name="r", lower=0.0, upper=1.0, on=5.0, off=-5.0, period=STEP)
     assert run(relay, {"u": u})["y"].tolist() == [-5, 5, 5, 5, -5, -5, 5, -5]
-
-
-def test_a_continuous_relay_switches_where_thresholds_are_crossed() -> None:
-    diagram = sf.Diagram("relay")
-    diagram.add(Sine(name="u", frequency=1.0))
-    diagram.add(Relay(name="r", lower=-0.5, upper=0.5), u="u.y")
-    diagram.add(sf.blocks.Integrator(name="x"), u="r.y")
-    found = sf.Simulation(diagram).run(1.0, dt=1e-3)
-    # On from sin = 1/2, at 1/12 s, until sin falls to -1/2, at 7/12 s.
-    assert [event.t for event in found.crossings] == pytest.approx([1 / 12, 7 / 12], abs=1e-9)
-    assert found["x.y"][-1] == pytest.approx(0.5, abs=1e-9)
 
 
 def test_rates_are_limited_in_both_directions() -> None:

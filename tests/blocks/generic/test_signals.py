@@ -9,7 +9,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
-from symofros.blocks import Constant, Gain, Hold, Join, Pick, Product, Reshape, Sum, UnitDelay
+from symofros.blocks import Constant, Gain, Hold, Join, Pick, Reshape, Sum, UnitDelay
 from tests.blocks.support import refused, run
 
 MATRIX = [[1.0, -2.0, 3.0], [0.5, 0.0, -1.0]]
@@ -42,13 +42,6 @@ def test_a_gain_is_a_scalar_a_vector_or_a_matrix(gain: object, rng: np.random.Ge
 def test_only_units_of_one_quantity_are_converted(unit_in: str, unit_out: str, factor: float) -> None:
     found = run(Gain(name="g", gain=3.0, unit_in=unit_in, unit_out=unit_out), {"u": [2.0, 5.0]})["y"]
     assert found == pytest.approx([6.0 * factor, 15.0 * factor], rel=1e-14)
-
-
-def test_sum_and_product_are_elementwise(rng: np.random.Generator) -> None:
-    u = {f"u{i}": rng.uniform(1, 2, size=(5, 2)) for i in (1, 2, 3)}
-    np.testing.assert_allclose(run(Sum(name="s", signs="+-+"), u)["y"], u["u1"] - u["u2"] + u["u3"], rtol=1e-14)
-    found = run(Product(name="p", operations="*/*"), u)["y"]
-    np.testing.assert_allclose(found, u["u1"] / u["u2"] * u["u3"], rtol=1e-14)
 
 
 def test_pick_join_and_reshape_rearrange_entries(rng: np.random.Generator) -> None:

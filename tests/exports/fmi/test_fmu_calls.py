@@ -45,22 +45,6 @@ def test_directional_derivatives_match_the_functions(unit: Any, name: str, rng: 
     assert np.abs(found - wanted).max() < DIFFERENCES * max(1.0, np.abs(wanted).max())
 
 
-def test_fmu_states_are_saved_and_restored(unit: Any) -> None:
-    it = unit("four_bar", cosim=True)
-    it.start()
-    it.fmu.doStep(0.0, 0.01)
-    saved = it.save()
-    text = it.pack(saved)
-    names = it.named("q.")
-    it.fmu.doStep(0.01, 0.02)
-    first = it.get(*names)
-    for state in (saved, it.unpack(text)):
-        it.restore(state)
-        assert it.get("time")[0] == 0.01
-        it.fmu.doStep(0.01, 0.02)
-        assert np.array_equal(it.get(*names), first)
-
-
 def test_parameters_are_separate_per_instance(unit: Any) -> None:
     one, other = unit("four_bar", cosim=True), unit("four_bar", cosim=True)
     one.set("par.m", 5.0)

@@ -5,7 +5,6 @@ from __future__ import annotations
 import itertools
 import math
 from dataclasses import replace
-from functools import cache
 from typing import Any
 
 import numpy as np
@@ -13,16 +12,8 @@ import pytest
 
 import symofros as sf
 from symofros.description.contacts import MEASURES
+from validation.procedures.equations.contacts import SURFACES
 
-SURFACES: dict[str, dict[str, Any]] = {
-    "plane": {},
-    "sphere": {"surface_radius": 0.5},
-    "cylinder": {"surface_radius": 0.5},
-    "capsule": {"surface_radius": 0.3, "length": 0.8},
-    "box": {"size": (0.8, 1.0, 0.6)},
-    "within a sphere": {"surface": "sphere", "surface_radius": 0.9, "inside": True},
-    "within a cylinder": {"surface": "cylinder", "surface_radius": 0.9, "inside": True},
-}
 INTERPRETED = sf.Options(backend="interpreter")
 LOSSY = {"dissipation": 0.4, "friction": 0.6, "minimum_velocity": 0.05}
 SOLID = sf.Inertia(2.0, (0.1, -0.05, 0.02), (0.3, 0.4, 0.35, 0.01, -0.02, 0.03))
@@ -42,87 +33,6 @@ def two_bodies(*contacts: sf.Contact) -> sf.System:
     }
     bodies = [sf.RigidBody(k, sf.Joint(f"j{k}", "free"), SOLID, [frame]) for k, frame in frames.items()]
     return sf.System("two_bodies", bodies, gravity=(0.0, 0.0, 0.0), connections=contacts)
-
-
-@cache
-def model(name: str, exponent: float = 1.5, lossy: bool = False) -> sf.Model:
-    return sf.compile(two_bodies(touching(name, exponent=exponent, **(LOSSY if lossy else {}))), INTERPRETED)
-
-
-def states(m: sf.Model, rng: np.random.Generator, count: int = 40) -> tuple[np.ndarray, np.ndarray]:
-    """States with the bodies near each other: some touch."""
-    q, v = (np.array(x) for x in zip(*(m.random_state(rng) for _ in range(count)), strict=True))
-    q[:, :3] *= 0.5
-    q[:, 7:10] *= 0.5
-    return q, v
-
-
-def distance(name: str, x: np.ndarray) -> np.ndarray:
-    """Distances of points (n, 3) from the solid's surface, by its definition."""
-    stated = SURFACES[name]
-    if "size" in stated:
-        beyond = np.abs(x) - np.array(stated["size"]) / 2
-        return np.linalg.norm(np.maximum(beyond, 0.0), axis=1) + np.minimum(beyond.max(axis=1), 0.0)
-    if name == "plane":
-        return x[:, 2]
-    axis = {"cylinder": 1e3, "within a cylinder": 1e3, "capsule": stated.get("length", 0.0) / 2}.get(name, 0.0)
-    nearest = np.zeros_like(x)
-    nearest[:, 2] = np.clip(x[:, 2], -axis, axis)
-    outside = np.linalg.norm(x - nearest, axis=1) - stated["surface_radius"]
-    return -outside if stated.get("inside") else outside
-
-
-@pytest.mark.parametrize("name", SURFACES)
-def test_gaps_and_points_are_those_of_the_surface(name: str, rng: np.random.Generator) -> None:
-    m = model(name)
-    q, v = states(m, rng)
-    found, contact = m.contact_forces(q, v), touching(name)
-    assert m.names.contacts == ("touch.0", "touch.1")
-    (p1, R1), (p2, R2) = m.frame_pose("one.skew", q), m.frame_pose("two.bent", q)
-    for k, point in enumerate(contact.points):
-        x = np.einsum("nji,nj->ni", R2, p1 + R1 @ np.array(point, float) - p2)
-        np.testing.assert_allclose(found.gap[:, k], distance(name, x) - 0.1, atol=1e-13)
-        on_surface = np.einsum("nji,nj->ni", R2, found.point[:, k] - p2)
-        free = np.abs(np.linalg.norm(found.force[:, k], axis=1)) > 0.0
-        np.testing.assert_allclose(distance(name, on_surface[free]), 0.0, atol=1e-13)
-        np.testing.assert_allclose(found.share[:, k], np.maximum(0.0, -found.gap[:, k]) / 0.1, rtol=1e-12)
-    assert 0.1 < (found.gap < 0.0).mean() < 0.95
-
-
-@pytest.mark.parametrize("exponent", [1.0, 1.5, 2.0])
-@pytest.mark.parametrize("name", SURFACES)
-def test_elastic_forces_are_slopes_of_the_energy(name: str, exponent: float, rng: np.random.Generator) -> None:
-    m = model(name, exponent)
-    q, v = states(m, rng, 20)
-    Q, h = m.generalized_force(q, v, []), 1e-6
-    for i in range(m.nv):
-        step = np.zeros(m.nv)
-        step[i] = h
-        ahead, behind = (m.potential_energy(m.integrate(q, sign * step)) for sign in (1.0, -1.0))
-        scale = max(np.abs(Q).max(), 1.0)
-        np.testing.assert_allclose(Q[:, i], (behind - ahead) / (2.0 * h), atol=2e-5 * scale)
-    push = m.contact_forces(q, v).push
-    assert (push >= 0.0).all() and push.any() and not push.all()
-
-
-@pytest.mark.parametrize("name", SURFACES)
-def test_contact_keeps_momentum_and_takes_energy(name: str, rng: np.random.Generator) -> None:
-    """Virtual power of motions of the whole vanishes; the power of all forces is at most the fall of the energy."""
-    m = model(name, lossy=True)
-    q, v = states(m, rng)
-    Q = m.generalized_force(q, v, [])
-    for unit in np.eye(3):
-        shift, turn = np.zeros_like(v), np.zeros_like(v)
-        for at, body in ((0, "one"), (6, "two")):
-            p, R = m.frame_pose(body, q)
-            shift[:, at : at + 3] = turn[:, at + 3 : at + 6] = np.einsum("nji,j->ni", R, unit)
-            turn[:, at : at + 3] = np.einsum("nji,nj->ni", R, np.cross(unit, p))
-        for whole in (shift, turn):
-            assert np.abs((Q * whole).sum(axis=1)).max() < 1e-12 * np.abs(Q).max()
-    h = 1e-7
-    slope = (m.potential_energy(m.integrate(q, h * v)) - m.potential_energy(m.integrate(q, -h * v))) / (2.0 * h)
-    lost = -(Q * v).sum(axis=1) - slope
-    assert (lost > -1e-6 * np.abs(Q).max()).all() and lost.max() > 0.0
 
 
 @pytest.mark.parametrize("name", SURFACES)

@@ -62,14 +62,6 @@ def test_columns_of_the_jacobian_are_partial_velocities(seed: int, prescribed: b
         np.testing.assert_allclose(at.values(row), at.values(expected), atol=ROUNDING)
 
 
-@pytest.mark.parametrize("seed", SEEDS)
-def test_velocity_is_the_jacobian_times_the_speeds(seed: int) -> None:
-    at = case(seed)
-    J = np.stack([at.values(row) for row in at.frames.jacobian(at.tip)], axis=1)
-    velocity = np.einsum("sik,sk->si", J, at.inputs["v"])
-    np.testing.assert_allclose(at.values(at.frames.velocity(at.tip)), velocity, atol=ROUNDING)
-
-
 @pytest.mark.parametrize(("seed", "prescribed"), CASES)
 def test_the_rate_of_the_jacobian_is_its_derivative_along_the_motion(seed: int, prescribed: bool) -> None:
     at = case(seed, prescribed)

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from dataclasses import replace
-
 import numpy as np
 import pytest
 
@@ -12,17 +10,6 @@ from reference_models import MODELS
 
 G = 9.81
 INTERPRETED = sf.Options(backend="interpreter")
-
-
-def actuated(system: sf.System, *joints: str) -> sf.System:
-    """The system with motors in some joints; in all of one coordinate, if none is named."""
-    bodies = []
-    for body in system.bodies:
-        joint = body.joint
-        if joint is not None and joint.kind in ("revolute", "continuous", "prismatic"):
-            joint = replace(joint, actuated=not joints or joint.name in joints)
-        bodies.append(replace(body, joint=joint))
-    return system.with_bodies(*bodies)
 
 
 def slider_crank(r: float = 1.0, rod: float = 2.5, mass: float = 1.0, **crank: bool) -> sf.System:
@@ -99,28 +86,6 @@ def test_an_actuator_and_a_drive_need_the_same_effort() -> None:
     assert drive == pytest.approx([7.0], rel=1e-12)
     # The actuator is an internal force of its joint: the wrench's moment about the axis (0, -1, 0).
     assert free.joint_wrenches(start.q, start.v, a, [7.0], lam)[0, 4] == pytest.approx(-7.0, rel=1e-12)
-
-
-@pytest.mark.parametrize(("name", "joints"), [("four_bar", ()), ("bricard", ("q1",))])
-def test_forward_dynamics_under_the_efforts_is_the_motion(name: str, joints: tuple[str, ...]) -> None:
-    """Of random efforts, at random postures, in a batch; redundant ones are of least norm (Karush, Kuhn, Tucker)."""
-    m = sf.compile(actuated(MODELS[name], *joints), INTERPRETED)
-    rng = np.random.default_rng(3)
-    guess = {"four_bar": [1.2, -1.0, 1.3]}.get(name, m.neutral())
-    states = [sf.assemble(m, guess + 0.1 * rng.normal(size=m.nq), rng.normal(size=m.nv)) for _ in range(4)]
-    q, v = np.array([state.q for state in states]), np.array([state.v for state in states])
-    u = rng.normal(size=(4, m.nu))
-    a = m.forward_dynamics(q, v, u)
-    result = sf.actuator_efforts(m, q, v, a)
-    again, lam = m.forward_dynamics(q, v, result.u, multipliers=True)
-    np.testing.assert_allclose(again, a, rtol=0, atol=1e-9 * np.abs(a).max())
-    np.testing.assert_allclose(result.lam, lam, rtol=0, atol=1e-8 * np.abs(lam).max())
-    if joints:
-        np.testing.assert_allclose(result.efforts, u, rtol=0, atol=1e-9)
-    assert np.all(result.redundancy == m.nu - 1)
-    # Efforts that move nothing are orthogonal to those of least norm: the difference from u is one.
-    products = np.sum((u - result.efforts) * result.efforts, axis=1)
-    np.testing.assert_allclose(products, 0.0, atol=1e-9)
 
 
 def test_a_beam_bent_beyond_its_theory_is_reported() -> None:

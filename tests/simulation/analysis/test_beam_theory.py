@@ -6,31 +6,18 @@ import math
 
 import numpy as np
 import pytest
-import scipy.optimize
-import scipy.special
 from hypothesis import given, settings
 from hypothesis import strategies as st
 
 import symofros as sf
 from tests.simulation.beam_models import cantilever, critical_load
+from validation.accuracy.statics.elastica import exact as elastica
 
 
 def error_of(**par: float) -> float:
     """Estimated error of the beam's equilibrium."""
     (bending,) = sf.equilibrium(cantilever().with_parameters(**par), beam_limit=math.inf).bendings
     return bending.error
-
-
-def elastica(load: float) -> tuple[float, float]:
-    """Deflection and shortening over L under F = load EI/L^2 at the tip, in elliptic integrals."""
-
-    def load_of(k: float) -> float:
-        return float(scipy.special.ellipk(k * k) - scipy.special.ellipkinc(np.arcsin(1 / (k * np.sqrt(2))), k * k)) ** 2
-
-    k = scipy.optimize.brentq(lambda k: load_of(k) - load, np.sqrt(0.5) + 1e-15, 1 - 1e-12, xtol=1e-16)
-    turned = np.arcsin(1 / (k * np.sqrt(2)))
-    second = float(scipy.special.ellipe(k * k) - scipy.special.ellipeinc(turned, k * k))
-    return 1 - 2 * second / math.sqrt(load), 1 - math.sqrt(2 * (2 * k * k - 1) / load)
 
 
 @pytest.mark.parametrize("load", [0.3, 1.0, 2.2])

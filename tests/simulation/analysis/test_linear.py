@@ -18,24 +18,6 @@ def state(name: str, seed: int = 0) -> tuple[np.ndarray, np.ndarray, np.ndarray]
     return q, v, rng.normal(size=m.nu)
 
 
-@pytest.mark.parametrize("name", ["rx90", "space_arm"])
-def test_derivatives_by_q_follow_the_flow(name: str) -> None:
-    """How a small difference of q changes as both configurations move on with the same speeds."""
-    m = model(name)
-    q, v, u = state(name)
-    A, _ = m.linearize(q, v, u)
-    h, d = 1e-4, 1e-4
-
-    def carried(change: np.ndarray, time: float) -> np.ndarray:
-        return m.difference(m.integrate(q, time * v), m.integrate(m.integrate(q, change), time * v))
-
-    for k in range(m.nv):
-        e = d * np.eye(m.nv)[k]
-        rate = (carried(e, h) - carried(-e, h) - carried(e, -h) + carried(-e, -h)) / (4 * h * d)
-        assert np.abs(rate - A[: m.nv, k]).max() < 1e-5
-    assert np.array_equal(A[: m.nv, m.nv :], np.eye(m.nv))
-
-
 def test_batches_equal_single_states() -> None:
     m = model("rx90")
     many = [state("rx90", seed) for seed in range(4)]

@@ -156,20 +156,6 @@ def record_of(segments: tuple[Segment, ...]) -> ModelRecord:
     return ModelRecord("m", "", q, v, (), (), (), {}, (), (), (0.0,) * len(q), lower, free, segments, (False,) * len(q))
 
 
-@pytest.mark.parametrize("case", ["double_pendulum", "heavy_top", "torque_free_body"])
-def test_rollouts_step_as_simulate_does(method: str, case: str, rng: np.random.Generator) -> None:
-    m = model(case, "c")
-    u = rng.normal(size=(N, m.nu))
-    if method == "rk4":  # Its last stage stands at the end of the step, where the next sample of a signal holds.
-        u[:] = u[0]
-    q0, v0 = m.integrate(m.neutral(), 0.3 * rng.normal(size=m.nv)), rng.normal(size=m.nv)
-    run = sf.rollout(m, q0, v0, u, 0.005, method=method)
-    signal = sf.Signal(run.t[:-1], u, "hold") if m.nu else None
-    other = sf.simulate(m, q0, v0, float(run.t[-1]), u=signal, method=method, dt=0.005)
-    np.testing.assert_allclose(run.q[-1], other.q[-1], rtol=1e-11, atol=1e-12)
-    np.testing.assert_allclose(run.v[-1], other.v[-1], rtol=1e-11, atol=1e-12)
-
-
 @pytest.mark.parametrize(
     ("case", "changes", "words"),
     [

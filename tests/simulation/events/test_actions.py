@@ -174,25 +174,6 @@ def test_fixed_steps_stay_where_they_were(every: int) -> None:
     assert run.v[-1, 0] == pytest.approx(v, abs=1e-12)
 
 
-@pytest.mark.parametrize("e", [0.05, 0.3, 1.0])
-def test_bodies_that_strike_by_a_constraint_rebound(e: float) -> None:
-    """At e times the speed of approach; 1 - e^2 of the energy of a plastic impact is lost, and nothing stays held."""
-    rail = [
-        sf.RigidBody(n, sf.Joint(n, "prismatic", axis=(1, 0, 0)), sf.Inertia(m)) for n, m in (("x", 1.0), ("y", 3.0))
-    ]
-    touch = sf.Closure("touch", ("x", None), ("y", None), ("x",))
-    switched = sf.Switch("touch", "contact")
-    system = sf.System("rail", tuple(rail), (sf.Parameter("contact", 0.0),), constraints=(touch,), switches=(switched,))
-    strike = sf.Event("x - y", "rising", action={"contact": 1}, restitution=e)
-    run = sf.simulate(sf.compile(system), [-0.5, 0.0], [1.0, 0.0], 1.0, events={"strike": strike}, method="dopri5")
-    found = run.events[0]
-    assert len(run.events) == 1 and run.outcome.kind == "finished" and found.t == pytest.approx(0.5, abs=1e-9)
-    assert found.v_after == pytest.approx([1.0 - 0.75 * (1 + e), 0.25 * (1 + e)], abs=1e-12)
-    assert found.energy_lost == pytest.approx(0.5 * 0.75 * (1 - e**2), abs=1e-12)
-    assert abs(found.impulse[0]) == pytest.approx(0.75 * (1 + e), abs=1e-12)
-    assert not run.lam.any() and np.array_equal(run.par_over_time[-1], run.par)
-
-
 @pytest.mark.parametrize("method", ["rk4", "dopri5"])
 @pytest.mark.parametrize("pull", [-2.0, 0.0, 2.0])
 def test_bodies_that_a_strike_leaves_at_rest_on_each_other(pull: float, method: str) -> None:

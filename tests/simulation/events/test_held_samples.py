@@ -19,8 +19,6 @@ INSTANTS = {
     "sums": np.cumsum([0.0] + [PERIOD] * (len(VALUES) - 1)),
     "divided": np.linspace(0.0, END, len(VALUES)),
 }
-FIXED = ["euler", "semi_implicit_euler", "rk4", "implicit_euler", "generalized_alpha", "variational"]
-ADAPTIVE = ["dopri5", "dop853", "rodas4"]
 
 
 @pytest.fixture(scope="module")
@@ -39,29 +37,6 @@ def in_pieces(model: sf.Model, **options: object) -> sf.Trajectory:
 
 def held(model: sf.Model, t: np.ndarray, **options: object) -> sf.Trajectory:
     return sf.simulate(model, t_end=END, u={model.names.u[0]: sf.Signal(t, VALUES, "hold")}, **options)
-
-
-@pytest.mark.parametrize("steps", [1, 2])
-@pytest.mark.parametrize("instants", INSTANTS)
-@pytest.mark.parametrize("method", FIXED)
-def test_steps_that_end_at_samples_match_constant_inputs(
-    cart: sf.Model, method: str, instants: str, steps: int
-) -> None:
-    options = {"method": method, "dt": PERIOD / steps}
-    run, pieces = held(cart, INSTANTS[instants], **options), in_pieces(cart, **options)
-    np.testing.assert_allclose(run.q[-1], pieces.q[-1], rtol=0, atol=1e-13)
-    np.testing.assert_allclose(run.v[-1], pieces.v[-1], rtol=0, atol=1e-12)
-    np.testing.assert_array_equal(run[cart.names.u[0]][::steps], VALUES)
-
-
-@pytest.mark.parametrize("method", ADAPTIVE)
-def test_adaptive_steps_end_where_inputs_change(cart: sf.Model, method: str) -> None:
-    t = INSTANTS["products"]
-    run, pieces = held(cart, t, method=method), in_pieces(cart, method=method, rtol=1e-11, atol=1e-13)
-    assert set(t) <= set(run.t)
-    np.testing.assert_array_equal(run[cart.names.u[0]][np.searchsorted(run.t, t)], VALUES)
-    np.testing.assert_allclose(run.v[-1], pieces.v[-1], rtol=0, atol=1e-6)
-    assert run.statistics.rejected <= 2
 
 
 def test_steps_that_samples_fall_within_are_held_against_half_of_that(cart: sf.Model) -> None:

@@ -16,7 +16,7 @@ from symofros.simulation.stepping.amplification import SPECTRAL_RADIUS
 from symofros.simulation.stepping.methods import METHODS
 from symofros.simulation.stepping.resolution import Pull, pull_rates, resolution
 from symofros.simulation.stepping.stepper import Stepper
-from tests.simulation.oscillator import fixed, oscillator
+from tests.simulation.oscillator import oscillator
 
 GAIN = st.floats(0.1, 100.0)
 
@@ -56,19 +56,6 @@ def test_the_factor_errs_by_the_order_of_the_method(name: str) -> None:
     for direction in (1j, -1.0):
         errors = [abs(method.amplification(r * direction) - cmath.exp(r * direction)) for r in sizes]
         assert math.log2(errors[0] / errors[1]) > method.order + 0.5
-
-
-@pytest.mark.parametrize("name", JUDGED)
-@pytest.mark.parametrize("z", [0.7j, 1.5j, -0.3 + 0.9j])
-def test_amplification_factors_match_simulated_steps(name: str, z: complex) -> None:
-    """The recurrence x_(k+2) - 2 Re R x_(k+1) + |R|^2 x_k = 0 of a factor and its conjugate."""
-    factor = METHODS[name].amplification(z)
-    run = sf.simulate(
-        oscillator(), [1.0], [0.4], 40.0, dt=1.0, par=[abs(z) ** 2, -2.0 * z.real], method=name, adaptive=fixed(name)
-    )
-    x = run.q[20:, 0]  # Generalised alpha has a third, fast factor, which dies away.
-    residual = x[2:] - 2.0 * factor.real * x[1:-1] + abs(factor) ** 2 * x[:-2]
-    assert np.abs(residual).max() < 1e-8 * max(1.0, np.abs(x).max())
 
 
 def test_limits_of_stability_match_the_literature() -> None:

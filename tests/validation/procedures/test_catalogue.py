@@ -31,10 +31,17 @@ def wrong(cells: Iterator[Cell]) -> list[str]:
     return [cell.name for cell in cells if not cell.error <= cell.tolerance]
 
 
-@pytest.mark.parametrize("name", ["heavy_top", "sleigh", "puma560"])
-def test_procedures_agree(name: str) -> None:
+# Every procedure of every model that the check asks.
+ASKED = [(name, k) for name, procedures in PROCEDURES.items() for k in range(len(procedures))]
+
+
+@pytest.mark.parametrize(("name", "k"), ASKED)
+def test_procedures_agree(name: str, k: int, monkeypatch: pytest.MonkeyPatch) -> None:
+    """What a procedure is asked of is in no other test again: a property is stated in one place."""
+    monkeypatch.setattr(catalogue, "PROCEDURES", {name: PROCEDURES[name][k : k + 1]})
     rows = list(judge_procedures(name, MODELS[name], assemble(MODELS[name])))
-    assert rows and all(row.ok for row in rows), [row for row in rows if not row.ok]
+    wrong = [row for row in rows if not row.ok and row.status != "unsupported"]
+    assert rows and not wrong, wrong
 
 
 def test_every_label_is_a_reference_model() -> None:

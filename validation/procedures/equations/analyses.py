@@ -75,7 +75,7 @@ def differentiated(scene: Scene) -> Iterator[Cell]:
     rows = derivative(inverse, np.zeros(2 * model.nv))
     yield Cell("inverse dynamics by state", off(np.hstack([by_q, by_v]), rows), DIFFERENCED)
     if model.npar:
-        share = par * _between(scene)
+        share = par * between(scene)
         by_par = derivative(lambda x: np.asarray(model.inverse_dynamics(q, v, a, u=u, par=par + share * x)), 0 * par)
         ours = model.inverse_dynamics_by_par(q, v, a, u=u) * share
         yield Cell("inverse dynamics by parameters", off(ours, by_par), DIFFERENCED)
@@ -83,7 +83,7 @@ def differentiated(scene: Scene) -> Iterator[Cell]:
         yield Cell("forward dynamics by parameters", off(model.forward_dynamics_by_par(q, v, u) * share, by_par), 1e-6)
 
 
-def _between(scene: Scene) -> Array:
+def between(scene: Scene) -> Array:
     """1 for parameters that may have values near their own, 0 for those of switches, which are 0 or 1 (npar)."""
     formulas = (switch.engaged for switch in scene.system.switches)
     switching = set[str]().union(*(x.symbols() for x in formulas if not isinstance(x, int | float)))

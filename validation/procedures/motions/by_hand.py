@@ -72,7 +72,11 @@ def held(scene: Scene) -> Iterator[Cell]:
     """Samples that hold until the next are constants of runs in a row, whichever way the instants are rounded."""
     model, period = scene.model, 0.05
     values = np.random.default_rng(10).standard_normal((5, model.nu))
-    instants = {"products": period * np.arange(5), "sums": np.cumsum([0.0, *[period] * 4])}
+    instants = {
+        "products": period * np.arange(5),
+        "sums": np.cumsum([0.0, *[period] * 4]),
+        "divided": np.linspace(0.0, 4 * period, 5),
+    }
     for method, options in _METHODS.items():
         q, v = scene.q, scene.v
         for row in values[:-1]:
@@ -90,10 +94,14 @@ def held(scene: Scene) -> Iterator[Cell]:
 
 _METHODS: dict[str, dict[str, Any]] = {
     "euler": {"dt": 0.025},
+    "semi_implicit_euler": {"dt": 0.025},
     "rk4": {"dt": 0.05},
     "rodas4": {"dt": 0.025, "adaptive": False},
+    "implicit_euler": {"dt": 0.025},
     "generalized_alpha": {"dt": 0.025},
+    "variational": {"dt": 0.025},
     "dopri5": {"rtol": 1e-10, "atol": 1e-12},
+    "dop853": {"rtol": 1e-10, "atol": 1e-12},
 }
 
 

@@ -2,8 +2,6 @@
 
 from __future__ import annotations
 
-from functools import cache
-
 import numpy as np
 import pytest
 
@@ -16,6 +14,8 @@ from symofros.mechanics.dynamics.applied.forces import coordinate_rates
 from symofros.mechanics.dynamics.equations import Equations
 from symofros.mechanics.dynamics.functions import Methods, Request, form_program
 from tests.models import model, system
+from tests.validation.subjects import assert_agrees
+from validation.procedures.equations import identities
 
 TRANSPOSED = tuple(row.transposes for row in FUNCTIONS.values() if row.transposes)
 # Run-time parameters, friction, ball and free joints, loops, rolling.
@@ -24,65 +24,9 @@ SCENES = ("friction_arm", "gyroscope", "slider_crank", "rolling_disc")
 MOST = 4.0
 
 
-@cache
-def interpreted(case: str, name: str) -> sf.Model:
-    """A function and its vector-Jacobian products."""
-    frames = tuple(frame.name for frame in Compilation(system(case)).tree.frames[-1:])
-    return sf.compile(system(case), sf.Options((name, f"{name}_vjp"), frames=frames, backend="interpreter"))
-
-
 @pytest.mark.parametrize("case", SCENES)
-@pytest.mark.parametrize("name", TRANSPOSED)
-def test_products_are_the_changes_of_the_weighted_sum(case: str, name: str, rng: np.random.Generator) -> None:
-    row = FUNCTIONS[name]
-    if (row.of_frame and not Compilation(system(case)).tree.frames) or (row.constrained_only and not model(case).nc):
-        pytest.skip("the model has no such thing")
-    m = interpreted(case, name)
-    q, v = m.random_state(rng)
-    frame = m.names.frames[-1] if row.of_frame else ""
-    sizes = {"q": m.nv, "v": m.nv, "a": m.nv, "u": m.nu, "lam": m.nc, "par": m.npar}
-    moved = [group for group in sizes if group in (*row.inputs, "u", "par")]
-    at = {group: rng.normal(size=sizes[group]) for group in moved} | {"q": q, "par": np.array(m.parameter_values)}
-    direction = {group: rng.normal(size=sizes[group]) for group in moved}
-    direction["par"] *= at["par"]
-
-    def outputs(step: float) -> dict[str, np.ndarray]:
-        given = {group: at[group] + step * direction[group] for group in moved if group != "q"}
-        given["q"] = m.integrate(q, step * direction["q"])
-        results = m.evaluate(name, frame, **given)
-        return {array.name: value for array, value in zip(row.outputs, results, strict=False) if array.name != "rank"}
-
-    m = m.with_parameter_checks(False)
-    weights = {
-        group: rng.normal(size=outputs(0.0)[of.name].shape)
-        for group, of in row.cotangents.items()
-        if of.name in outputs(0.0)
-    }
-    products = m.vjp(name, frame, **at, **weights)
-    along = sum(float(products[group] @ direction[group]) for group in moved if group in products)
-    h = 2e-4
-    terms = [
-        np.sum(
-            weight * (8 * (outputs(h)[of] - outputs(-h)[of]) - (outputs(2 * h)[of] - outputs(-2 * h)[of])) / (12 * h)
-        )
-        for of, weight in ((row.cotangents[group].name, weight) for group, weight in weights.items())
-    ]
-    size = sum(float(np.abs(products[group]).sum()) for group in products)
-    assert along == pytest.approx(sum(terms), rel=1e-7, abs=1e-8 * max(1.0, size))
-    assert set(moved) == set(products)
-
-
-@pytest.mark.parametrize("case", ["slider_crank", "rolling_disc"])
-def test_multipliers_have_products_by_one_more_solution_of_the_same_system(case: str, rng: np.random.Generator) -> None:
-    names = ("forward_dynamics_vjp", "forward_dynamics_derivatives", "forward_dynamics_by_par")
-    for backend in ("interpreter", "c"):
-        m = sf.compile(system(case), sf.Options(names, backend=backend))
-        q, v = m.random_state(rng)
-        u, w = rng.normal(size=m.nu), rng.normal(size=m.nv + m.nc)
-        J = [*m.evaluate(names[1], q=q, v=v, u=u), *m.evaluate(names[2], q=q, v=v, u=u)]
-        products = m.evaluate(names[0], q=q, v=v, u=u, a_bar=w[: m.nv], lam_bar=w[m.nv :])
-        for product, of in zip(products, J, strict=True):
-            np.testing.assert_allclose(product, w @ of, rtol=0, atol=1e-9 * max(1.0, np.abs(of).max(initial=0.0)))
+def test_products_are_the_changes_of_the_weighted_sum(case: str) -> None:
+    assert_agrees(identities.transposed, system(case))
 
 
 @pytest.mark.parametrize("case", ["joints2", "heavy_top", "gyroscope", "friction_arm", "slider_crank", "puma560"])
