@@ -150,18 +150,6 @@ def test_more_events_in_a_call_than_the_buffer_holds_are_kept() -> None:
     assert [event.t for event in stepper.events] == [event.t for event in run.events]
 
 
-def test_adaptive_methods_step_between_marks() -> None:
-    model = compiled("double_pendulum")
-    q, v = start("double_pendulum")
-    stepper = sf.Stepper(model, method="dopri5", dt=0.05, rtol=1e-9, atol=1e-12)
-    stepper.reset(q, v, 1.0)
-    run = sf.simulate(model, q, v, 2.0, t0=1.0, method="dopri5", rtol=1e-9, atol=1e-12)
-    for k in range(1, 11):
-        assert stepper.step(steps=2) and stepper.t == pytest.approx(1.0 + 0.1 * k, abs=1e-12)
-    np.testing.assert_allclose(stepper.q, run.q[-1], atol=1e-7)
-    assert stepper.outcome.ok
-
-
 def test_laws_and_manual_inputs_combine() -> None:
     model = crane()
     law = {"th": "0.3*sin(2*t)"}
