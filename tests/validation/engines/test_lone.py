@@ -7,7 +7,7 @@ from dataclasses import replace
 import numpy as np
 import pytest
 
-from tests.late import needs_extra
+from tests.late import needs_extra, require
 from validation.engines.causes.cause import stated
 from validation.engines.interface import STEP, Slot, Tree
 from validation.engines.matrix import SEED, Truths, cells, judged
@@ -90,7 +90,17 @@ def test_a_default_that_is_forgotten_is_a_red_cell(function: str) -> None:
     assert judge("planted", one.tree, function, np.asarray(given.answer.value), want.want).verdict == "wrong"
 
 
+def test_a_locked_joint_that_a_goal_moves_is_a_red_cell() -> None:
+    require("pydrake", "engine-drake")
+    tree = SINGLE["joints that are locked, held and coupled in a step"]
+    (one,) = judged(OWN["drake"], Job("drake", tree, ("goal_of_locked",), SEED), Truths())
+    assert one.cell.verdict == "right" and one.want is not None
+    moved = np.asarray(one.answer.value) * [1.0, 0.0]
+    assert judge("planted", tree, "goal_of_locked", moved, one.want).verdict == "wrong"
+
+
 def test_a_mass_that_is_read_where_none_is_stated_is_a_red_cell() -> None:
+    require("yourdfpy", "yourdfpy")
     one = urdf.files()["urdf: mass without value"]
     for text, verdict in ((one.text, "right"), (one.text.replace("<mass/>", '<mass value="1"/>'), "wrong")):
         job = Job("yourdfpy", one.tree, ("link_bodies",), SEED, form="urdf", text=text)
@@ -98,6 +108,7 @@ def test_a_mass_that_is_read_where_none_is_stated_is_a_red_cell() -> None:
 
 
 def test_gravity_that_a_reader_leaves_out_shows_where_it_reads_no_masses() -> None:
+    require("dartpy", "engine-dart")
     one = LINES["mjcf: gravity of unit masses"]
     job = Job("dart", one.tree, ("mass_matrix", "bias"), SEED, form="mjcf", text=one.text)
     cells = [found.cell for found in judged(OWN["dart"], job, Truths())]

@@ -18,6 +18,7 @@ def _of_turns() -> dict[str, Function]:
         "rotation_matrix": ("rows of R (9)", turns.matrix),
         "rotation_composed": ("rows of R Q (9)", turns.composed),
         "rotation_angle": ("angle of R^T Q (1)", turns.angle),
+        "rotation_cost": ("1 + 2 (1 - cos of the angle of R^T Q) (1)", turns.cost),
         "rotation_logarithm": ("rotation vector of R (3)", turns.logarithm),
         "rotation_exponential": ("rows of the rotation by the vector v (9)", turns.exponential),
         "rotation_exponential_of_turns": ("rows of the rotation by the vector 16 v (9)", turns.exponential_of_turns),

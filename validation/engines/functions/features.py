@@ -95,6 +95,10 @@ def _parameters() -> dict[str, Function]:
         "step_of_unlocked": ("the same with none locked (6)", parameters.unlocked),
         "step_of_held_distance": ("two slides after a step with a spring between them (4)", parameters.held_distance),
         "step_of_freed_distance": ("the same without that spring (4)", parameters.free_distance),
+        "goal_of_locked": (
+            "coordinates of two slides at a goal of the first, the second locked (2)",
+            parameters.goal_of_locked,
+        ),
         "step_of_coupled": ("speeds after a step of coupled slides (2)", parameters.coupled),
     }
     of_defaults = functions_of(rows, "defaults and parameters: gears, rotors, dampers, model instances")

@@ -9,6 +9,7 @@ from ..truth.features.connectors import CONNECTORS
 from ..truth.geometry.attitudes import ATTITUDES
 from ..truth.spaceflight.guidance import GUIDANCE
 from ..truth.spaceflight.orbits import ORBITS
+from ..truth.spaceflight.parts import PARTS
 from ..truth.spaceflight.spacecraft import SPACECRAFT
 from .acting import ACTING, MEASURED
 from .algebra import ALGEBRA
@@ -44,7 +45,9 @@ FUNCTIONS: dict[str, Function] = (
     | VECTORS
     | DEVICES
 )
-FUNCTIONS |= functions_of(ATTITUDES | ORBITS | GUIDANCE | CONNECTORS, "turns") | functions_of(SPACECRAFT, "spacecraft")
+FUNCTIONS |= functions_of(ATTITUDES | ORBITS | GUIDANCE | PARTS | CONNECTORS, "turns") | functions_of(
+    SPACECRAFT, "spacecraft"
+)
 # Of "turns", what depends on the rotations R and Q: the others have no part in `Tree.beside`.
 _OF_ROTATIONS = re.compile(
     "rotation_(matrix(?!_rate)|composed|angle|logarithm|inverse|halfway|difference|squared|to_rpy|vector_rates_along)"

@@ -148,10 +148,10 @@ def _sections() -> Iterator[tuple[str, Reading]]:
     yield title, Reading("mjcf", file(head=whole), Tree(title, _LINKS, gravity=(1.0, -2.0, -3.0)))
     # Of 1 kg and unit moments, as readers take that read no masses: gravity shows alone.
     plain = '<inertial pos="0 0 0" mass="1" diaginertia="1 1 1"/>'
-    slides = tuple(one.replace("<joint", '<joint type="slide"') + plain for one in (JOINT_A, JOINT_B))
-    unit = tuple(replace(hung(one, kind="prismatic"), mass=1.0, com=ORIGIN, inertia=IDENTITY) for one in _LINKS)
+    one, other = (joint.replace("<joint", '<joint type="slide"') + plain for joint in (JOINT_A, JOINT_B))
+    unit = tuple(replace(hung(link, kind="prismatic"), mass=1.0, com=ORIGIN, inertia=IDENTITY) for link in _LINKS)
     title = "mjcf: gravity of unit masses"
-    text = file(*slides, RADIAN + '<option gravity="1 -2 -3"/>')
+    text = file(one, other, RADIAN + '<option gravity="1 -2 -3"/>')
     yield title, Reading("mjcf", text, Tree(title, unit, gravity=(1.0, -2.0, -3.0)))
     borne = tuple(replace(one, compensation=part) for one, part in zip(_LINKS, (0.25, 1.0), strict=True))
     weights = file(JOINT_A + MA, JOINT_B + MB, at=('gravcomp="0.25"', 'gravcomp="1"'))

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...interface import Convention, Slot, Tree, Unsupported
 from ...truth.spaceflight.tanks import LENGTH, MASS, RADIUS
 from ..writing.source import Source, SourcePlugin, Way
-from . import craft, kinematics, modules, orbits
+from . import craft, kinematics, modules, orbits, parts
 
 # Modules of effectors, and the placements that they begin with.
 _EFFECTORS = {
@@ -32,7 +32,7 @@ def _unset() -> dict[str, Way]:
     return ways
 
 
-WAYS = kinematics.WAYS | orbits.WAYS | craft.WAYS | modules.WAYS | _unset()
+WAYS = kinematics.WAYS | orbits.WAYS | craft.WAYS | modules.WAYS | parts.WAYS | _unset()
 
 # Models of tanks -> names of their functions.
 _TANKS = {

@@ -5,7 +5,7 @@ from __future__ import annotations
 from ...interface import STEP
 from ...truth.features.parameters import COUPLED, DAMPING, GRAVITY, MASSES, REST, STIFFNESS
 from ..loops.drake_forces import SAP
-from ..writing.source import Way, ways_of
+from ..writing.source import NO_SOLUTION, Way, ways_of
 
 _X = "x = np.abs(v) + 0.5\n"
 _UNIT = "drake.SpatialInertia(1.0, np.zeros(3), drake.UnitInertia(1.0, 1.0, 1.0))"
@@ -300,6 +300,14 @@ p.SetDistanceConstraintParams(c, k, drake.DistanceConstraintParams(o.bodyA(), o.
 {_ONE_LINE}k = {_BETWEEN}
 p.RemoveConstraint(k)
 {_DONE}{_RUN}{_ON_X}{_PUSHED}{_STEPPED}{_OF_TWO}
+== goal_of_locked ~ 1e-5 | InverseKinematics, Joint.Lock
+{_DISCRETE}{_DONE}{_CONTEXT}{_PLACES}jy.set_translation(c, v[1])
+jy.Lock(c)
+ik, x = drake.InverseKinematics(p, c), a[0] / (1 + abs(a[0]))
+ik.AddPositionConstraint(by.body_frame(), np.zeros(3), p.world_frame(), [x, -np.inf, -np.inf], [x, np.inf, np.inf])
+result = drake.Solve(ik.prog(), np.zeros(3))
+if not result.is_success(): raise {NO_SOLUTION.replace(": ", "('")}')
+value = result.GetSolution(ik.q())[qs][:2]
 == # SAP's solver in the near-rigid regime, as for `step_bound`.
 == step_of_coupled ~ 0.001 | AddCouplerConstraint
 {_X_ALONE}p.AddCouplerConstraint(jx, jz, {COUPLED[0]}, {COUPLED[1]})

@@ -162,6 +162,12 @@ value = drake.RollPitchYaw(drake.Quaternion(q)).ToRotationMatrix().matrix().rave
 == rotation_composed | RotationMatrix.multiply | {_R}value = (R @ Q).matrix().ravel()
 == rotation_composed:Quaternion | Quaternion.multiply
 value = drake.Quaternion(q).multiply(drake.Quaternion(q2)).rotation().ravel()
+== rotation_cost | OrientationCost
+{_R}p = drake.MultibodyPlant(0.0)
+b = p.AddRigidBody('b', drake.SpatialInertia(1.0, np.zeros(3), drake.UnitInertia(1.0, 1.0, 1.0))).body_frame()
+p.Finalize()
+c, none = p.CreateDefaultContext(), drake.RotationMatrix()
+value = 1 + drake.OrientationCost(p, p.world_frame(), R, b, none, 2.0, c).Eval([*q2, 0, 0, 0])
 == rotation_angle | RotationMatrix.InvertAndCompose | {_R}value = [R.InvertAndCompose(Q).ToAngleAxis().angle()]
 == rotation_logarithm | ToAngleAxis | {_R}x = R.ToAngleAxis()\nvalue = x.angle() * x.axis()
 == rotation_exponential | AngleAxis

@@ -131,6 +131,11 @@ def unlocked(t: Truth, s: Point) -> Exact:
     return _stepped(s.v, s.a + _STEP * s.tau / _matrix())
 
 
+def goal_of_locked(t: Truth, s: Point) -> Exact:
+    """Coordinates of two slides, of which the second is locked at v[1] and the first has its goal (2)."""
+    return np.array([s.a[0] / (1 + abs(s.a[0])), s.v[1]])
+
+
 def _apart(s: Point) -> Exact:
     """Places of two slides along x: |v[0]| + 1 apart (2)."""
     return np.array([s.v[2], s.v[2] + abs(s.v[0]) + 1])

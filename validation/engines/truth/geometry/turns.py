@@ -43,6 +43,11 @@ def angle(t: Truth, s: Point) -> Exact:
     return np.array([root(vector @ vector)])
 
 
+def cost(t: Truth, s: Point) -> Exact:
+    """1 + 2 (1 - cos) of that angle (1): the trace of the rotation is 1 + 2 cos."""
+    return np.array([4 - np.trace(turn(t, s.q).T @ turn(t, s.q2))])
+
+
 def logarithm(t: Truth, s: Point) -> Exact:
     """Rotation vector of R (3)."""
     return rotation_vector(turn(t, s.q))

@@ -7,6 +7,7 @@ import pytest
 from numpy.typing import NDArray
 from scipy.linalg import expm, logm
 
+from validation.engines.functions.beside import TURNS
 from validation.engines.functions.poses import POSES
 from validation.engines.interface import Slot, State
 from validation.engines.models import single
@@ -21,7 +22,7 @@ _STATE: State = random_state(_TURNS, _LAYOUT, 2)
 
 
 def _of(name: str, state: State = _STATE) -> Array:
-    return digits(Truth(_TURNS, _LAYOUT).value(POSES[name].truth, Point.of(state)))
+    return digits(Truth(_TURNS, _LAYOUT).value((POSES | TURNS)[name].truth, Point.of(state)))
 
 
 def _matrix(q: Array) -> Array:
@@ -61,6 +62,7 @@ _EXPECTED = {
     "pose_composed": _flat(_X @ _Y),
     "pose_unset": _flat(np.eye(4)),
     "pose_drawn": _STATE.v,
+    "rotation_cost": 3 - 2 * np.cos([np.linalg.norm(_vee(np.real(logm(_APART)))[3:])]),
     "pose_inverse": _flat(np.asarray(np.linalg.inv(_X), dtype=float)),
     "pose_relative": _flat(_APART),
     "pose_of_point": (_X @ [*_STATE.v, 1.0])[:3],
