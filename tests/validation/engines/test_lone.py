@@ -99,6 +99,18 @@ def test_a_locked_joint_that_a_goal_moves_is_a_red_cell() -> None:
     assert judge("planted", tree, "goal_of_locked", moved, one.want).verdict == "wrong"
 
 
+def test_builders_of_newton_make_what_is_stated() -> None:
+    require("newton", "engine-newton")
+    asked = ("coordinates_of_anchored", "velocity_of_turned_copy", "areas_of_triangles")
+    tree = SINGLE["defaults and parameters: gears, rotors, dampers, model instances"]
+    found = list(judged(OWN["newton"], Job("newton", tree, asked, SEED), Truths()))
+    assert [one.cell.verdict for one in found] == ["right"] * 3
+    for one in found:  # As it was kept: where the body stands, along the old axes, the area of the one before.
+        assert one.want is not None
+        old = np.roll(np.asarray(one.answer.value), 1)
+        assert judge("planted", tree, one.cell.function, old, one.want).verdict == "wrong"
+
+
 def test_a_mass_that_is_read_where_none_is_stated_is_a_red_cell() -> None:
     require("yourdfpy", "yourdfpy")
     one = urdf.files()["urdf: mass without value"]

@@ -88,6 +88,12 @@ def _parameters() -> dict[str, Function]:
         "limits_set": ("limits of coordinates, speeds, accelerations (6, 3)", parameters.limits),
         "damping_set": ("forces of the dampers x (3)", parameters.damped),
         "power_of_damping": ("power of these (1)", parameters.lost_power),
+        "coordinates_of_anchored": ("position of a free body at v, of a joint anchored at a (3)", parameters.anchored),
+        "velocity_of_turned_copy": (
+            "velocities v, a of a body in a model that is added turned by R (6)",
+            parameters.turned_velocity,
+        ),
+        "areas_of_triangles": ("areas of two triangles that a flat one stands between (2)", parameters.areas),
         "spring_set": ("force and energy of a spring of stiffness x[0], rest x[1], at v[2] (2)", parameters.sprung),
     }
     steps = {

@@ -9,6 +9,7 @@ DRAKE = {
     "trajectories": "PiecewisePolynomial, BsplineTrajectory, PiecewisePose",
     "linear systems and controllers": "Simulator, Linearize, LinearQuadraticRegulator",
 }
+NEWTON = {"defaults and parameters: gears, rotors, dampers, model instances": "ModelBuilder"}
 DART = {
     "defaults and parameters: gears, rotors, dampers, model instances": "setInitialPositions, setMass, setCommands",
     "servos, motors, dry friction and joints at limits": "setActuatorType, setCoulombFriction, setLimitEnforcement",

@@ -4,21 +4,24 @@ from __future__ import annotations
 
 from ...interface import SINGLE, Convention, Statement, Tree, Unsupported
 from ...models.covering import COVERING
+from .. import features, turns
 from ..writing.source import Source, SourcePlugin
 from ..writing.urdf import has_bare_shape
-from . import scenes
+from . import builders, scenes
 from .files import READERS, write_reading
 from .files import WAYS as OF_FILES
 from .lone import WAYS as OF_LONE
 from .lone import write_held, write_wheel
 from .model import has_tiny_moments, write
-from .ways import WAYS
+from .ways import IMPORTS, WAYS
 
 
 def _write(tree: Tree) -> Source | Unsupported:
     """Text that builds a tree, or the lone body that is asked for."""
     if tree.asked == COVERING:
         return scenes.write(tree)
+    if tree.asked in features.NEWTON:
+        return turns.source(*IMPORTS, scalar_last=True)
     if tree.asked == "held distances":
         return write_held(tree)
     return write_wheel(tree) if tree.asked == "wheels" else write(tree)
@@ -59,9 +62,10 @@ PLUGIN = SourcePlugin(
         "two slides and a hinge": "add_joint_d6",
         "translation and euler zyx": "add_joint_d6",
     },
-    ways=WAYS | OF_FILES | OF_LONE | scenes.WAYS,
+    ways=WAYS | OF_FILES | OF_LONE | scenes.WAYS | builders.WAYS,
     write=_write,
     demands={
+        **features.NEWTON,
         "dampers": "damping",
         "springs": "stiffness, rest_q",
         "actuators": "joint_f, target_ke, target_kd",

@@ -15,6 +15,7 @@ from ...interface import STEP
 from ..arithmetic import Exact, exact, solve, zeros
 from ..dynamics import Point, Truth
 from ..geometry.bodies import sizes
+from ..geometry.turns import turn
 
 # Of the slides along x, y, z.
 MASSES = (2.0, 3.0, 5.0)
@@ -113,6 +114,23 @@ def sprung(t: Truth, s: Point) -> Exact:
     x = sizes(s)
     stretch = s.v[2] - x[1]
     return np.array([-x[0] * stretch, x[0] * stretch**2 / 2])
+
+
+def anchored(t: Truth, s: Point) -> Exact:
+    """Position (3) of a body at v against an anchor at a."""
+    return s.v - s.a
+
+
+def turned_velocity(t: Truth, s: Point) -> Exact:
+    """Velocity v and angular velocity a (6), once all is turned by R."""
+    R = turn(t, s.q)
+    return np.concatenate([R @ s.v, R @ s.a])
+
+
+def areas(t: Truth, s: Point) -> Exact:
+    """Areas (2) of two triangles at right angles, with legs x[0], x[1], and 2 x[0], 3 x[1]."""
+    x = sizes(s)
+    return x[0] * x[1] * exact((0.5, 3.0))
 
 
 def _stepped(q: Exact, speed: Exact) -> Exact:

@@ -38,8 +38,8 @@ def shared_fuel(t: Truth, s: Point) -> Exact:
 
 
 def pull(t: Truth, s: Point) -> Exact:
-    """Force (3) of the source on 1 kg at v2 + AWAY."""
-    r = (s.v2 + exact(AWAY) - exact(SOURCE)) * Decimal(LENGTH)
+    """Force (3) of the source on 1 kg at v2 + AWAY from it: it is the centre, wherever it stands."""
+    r = (s.v2 + exact(AWAY)) * Decimal(LENGTH)
     return -Decimal(MU) * r / root(r @ r) ** 3
 
 
@@ -47,5 +47,5 @@ PARTS: dict[str, tuple[str, TruthOf]] = {
     "wheels_among_others": ("angles of two of four wheels after a step, as parts of it, and speeds of all (6)", wheels),
     "sensed_before_a_step": ("1 + acceleration without gravity of a spacecraft that nothing acts on (3)", sensed_first),
     "tank_shared": ("masses of a tank and of a particle of its fuel after a step with a leak (2)", shared_fuel),
-    "pull_of_a_source": ("force on a body of 1 kg at v2 + (4, -8, 8) of a source with a place alone (3)", pull),
+    "pull_of_a_source": ("force of a central source, which states no attitude, on 1 kg at v2 + (4, -8, 8) (3)", pull),
 }

@@ -27,7 +27,7 @@ def test_what_leaks_is_shared_by_the_parts_of_the_fuel() -> None:
 
 
 def test_a_source_pulls_towards_itself_by_the_inverse_square() -> None:
-    force, way = _of(parts.pull), parts.LENGTH * (np.array(parts.SOURCE) - _STATE.v2 - AWAY)
+    force, way = _of(parts.pull), -parts.LENGTH * (_STATE.v2 + AWAY)
     np.testing.assert_allclose(np.cross(force, way), np.zeros(3), atol=1e-6)
     np.testing.assert_allclose(force @ way * np.linalg.norm(way), parts.MU)
 
