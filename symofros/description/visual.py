@@ -26,8 +26,8 @@ class Visual:
         color: Red, green, blue, 0 to 255; None where it is not stated.
         file: Path of a mesh.
         picture: Path of a picture, the colors of which, times `color`, it has; "" where none is stated.
-        checker: Second of the two colors of a checker pattern, of octants around the frame's axes; None where all of it
-            has `color`, which is the first.
+        checker: Second of the two colors of a checker pattern, of octants around the frame's axes, a mesh's around its
+            principal axes of inertia; None where all of it has `color`, which is the first.
         is_mapped: Whether the mesh's file says which place of the picture each corner has; else it has its mean color.
     """
 

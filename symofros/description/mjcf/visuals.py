@@ -136,7 +136,7 @@ def visuals_of(
             picture = "" if texture is None else texture.file
             is_mapped = texture is not None and texture.is_flat
             visual = replace(visual, color=color, picture=picture, is_mapped=is_mapped)
-            if texture is not None and texture.squares is not None and visual.kind != "mesh":
+            if texture is not None and texture.squares is not None:
                 first, second = (color_of((rgba[:3] * square).tolist()) for square in texture.squares)
                 visual = replace(visual, color=first, checker=second)
             visuals[body] = (*visuals.get(body, ()), visual)

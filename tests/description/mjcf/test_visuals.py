@@ -12,6 +12,7 @@ import pytest
 import symofros as sf
 from symofros.base.arrays import Array
 from symofros.description.visual import Visual
+from symofros.studio.viewer.drawing.visual_meshes import visual_mesh
 
 CORNERS = np.array([[0.0, 0, 0], [1, 0, 0], [0, 2, 0], [0, 0, 3]])
 FILE = "".join(f"v {x} {y} {z}\n" for x, y, z in CORNERS) + "f 1 3 2\nf 1 2 4\nf 1 4 3\nf 2 3 4\n"
@@ -99,7 +100,7 @@ def test_colours_are_those_of_shapes_or_materials(
     ("texture", "color", "picture", "is_mapped"),
     [
         ('name="skin" builtin="flat" rgb1="0 1 0"', (0, 128, 0), "", False),
-        ('name="skin" builtin="checker" rgb1="1 1 1" rgb2="0 0 1"', (0, 64, 255), "", False),
+        ('name="skin" builtin="checker" type="2d" rgb1="1 1 1" rgb2="0 0 1"', (0, 64, 255), "", False),
         ('name="skin" builtin="gradient" rgb1="0 0 0" rgb2="0 1 1"', (0, 64, 128), "", False),
         ('file="skin.png" type="2d"', (0, 128, 255), "skin.png", True),
         ('name="skin" file="skin.png"', (0, 128, 255), "skin.png", False),  # A cube's.
@@ -185,5 +186,22 @@ def test_a_cubes_checker_keeps_its_two_colors(kind: str, checker: object, tmp_pa
     )
     file.write_text(text)
     mesh, sphere = sf.load(file).visuals["a"]
-    assert mesh.checker is None and mesh.color == (128, 0, 128)
-    assert sphere.checker == checker and sphere.color == ((255, 0, 0) if checker else (128, 0, 128))
+    for shape in (mesh, sphere):
+        assert shape.checker == checker and shape.color == ((255, 0, 0) if checker else (128, 0, 128))
+
+
+@pytest.mark.parametrize("inertial", INERTIAS.values(), ids=INERTIAS)
+@pytest.mark.parametrize("mesh", ["", 'scale="0.5 -2 1" refpos="0.3 0.2 0.1"'])
+def test_a_meshs_checker_lies_along_its_axes_in_mujoco(mesh: str, inertial: str, tmp_path: Path) -> None:
+    """MuJoCo lays a cube's checker on the axes of a mesh's own frame (mesh_pos, mesh_quat in the frame of the file)."""
+    made = '<texture name="t" builtin="checker" type="cube" rgb1="1 0 0" rgb2="0 0 1" width="8" height="8"/>'
+    more = f'<asset>{made}<material name="skin" texture="t"/></asset>'
+    file = written(tmp_path, mesh, f'material="skin" {TURNED}', inertial, more)
+    (shape,) = sf.load(file).visuals["a"]
+    drawn, model = visual_mesh(shape), mujoco.MjModel.from_xml_path(str(file))
+    assert drawn is not None and drawn.colors is not None
+    R_BM, R_BF = np.zeros(9), np.array([float(str(entry)) for entry in shape.rotation]).reshape(3, 3)
+    mujoco.mju_quat2Mat(R_BM, model.geom_quat[0])
+    middles_B = drawn.vertices[drawn.faces].mean(axis=1) @ R_BF.T + shape.position
+    middles = (middles_B - model.geom_pos[0]) @ R_BM.reshape(3, 3)
+    assert (drawn.colors == np.where(middles.prod(axis=1, keepdims=True) > 0.0, (255, 0, 0), (0, 0, 255))).all()

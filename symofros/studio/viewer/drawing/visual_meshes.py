@@ -122,19 +122,36 @@ def visual_mesh(visual: Visual) -> Mesh | None:
     """A shape in its own frame; None, with a warning, for a mesh that can't be read."""
     mesh = _shape(visual)
     if mesh is not None and visual.checker is not None:
-        return _checkered(mesh, visual.color or visual.checker, visual.checker)
+        center, axes = _principal_frame(mesh) if visual.kind == "mesh" else (np.zeros(3), np.eye(3))
+        return _checkered(mesh, center, axes, (visual.color or visual.checker, visual.checker))
     return mesh if mesh is None or not visual.picture else _painted(mesh, visual)
 
 
-def _checkered(mesh: Mesh, first: tuple[int, int, int], second: tuple[int, int, int]) -> Mesh:
-    """A shape cut at the planes of its axes: the first color where x y z > 0, as MuJoCo lays its checker on a cube."""
+def _principal_frame(mesh: Mesh) -> tuple[Array, Array]:
+    """Center of mass (3) and principal axes, rows (3, 3), right-handed, of the largest moment first: MuJoCo's for it.
+
+    The frame of the file where the mesh has no volume.
+    """
+    with np.errstate(all="ignore"):
+        matter = import_module("trimesh.triangles").mass_properties(mesh.vertices[mesh.faces])
+    if not np.all(np.isfinite([*matter["center_mass"], *np.ravel(matter["inertia"])])):
+        return np.zeros(3), np.eye(3)
+    _, columns = np.linalg.eigh(-np.sign(matter["volume"]) * np.asarray(matter["inertia"]))
+    axes: Array = columns.T * np.linalg.det(columns)
+    return np.asarray(matter["center_mass"]), axes
+
+
+def _checkered(
+    mesh: Mesh, center: Array, axes: Array, colors: tuple[tuple[int, int, int], tuple[int, int, int]]
+) -> Mesh:
+    """A shape cut at the planes of axes: the first color where x y z > 0 along them, as MuJoCo lays its checker."""
     cut = import_module("trimesh.intersections").slice_faces_plane
     octants = []
     for signs in product((1.0, -1.0), repeat=3):
         vertices, faces = mesh.vertices, mesh.faces
-        for normal in np.diag(signs):
-            vertices, faces, _ = cut(vertices, faces, normal, np.zeros(3))
-        color = np.array(first if np.prod(signs) > 0.0 else second, dtype=np.int16)
+        for normal in np.array(signs)[:, None] * axes:
+            vertices, faces, _ = cut(vertices, faces, normal, center)
+        color = np.array(colors[0 if np.prod(signs) > 0.0 else 1], dtype=np.int16)
         octants.append(Mesh(vertices, faces.astype(np.int64), np.tile(color, (len(faces), 1))))
     return merged(octants)
 

@@ -362,3 +362,11 @@ def test_a_checker_has_its_colors_by_octants_and_changes_no_shape(visual: Visual
     middles = mesh.vertices[mesh.faces].mean(axis=1)
     assert (mesh.colors == np.where(middles.prod(axis=1, keepdims=True) > 0.0, RED, BLUE)).all()
     assert volume(mesh) == pytest.approx(volume(plain), rel=1e-9)
+
+
+def test_a_mesh_without_a_volume_keeps_its_checker(tmp_path: Path) -> None:
+    file = tmp_path / "sheet.obj"
+    file.write_text("v -1 -1 0\nv 1 -1 0\nv 1 1 0\nf 1 2 3\n")
+    mesh = visual_mesh(Visual("mesh", (1.0, 1.0, 1.0), color=RED, checker=BLUE, file=str(file)))
+    assert mesh is not None and mesh.colors is not None and np.isfinite(mesh.vertices).all()
+    assert {tuple(color) for color in mesh.colors.tolist()} <= {RED, BLUE}
