@@ -318,7 +318,9 @@ def _declared(name: str, stated: Stated, allowed: frozenset[str]) -> str:
         plain = name_of(name)
         return f"no coordinate is called {plain}; write {plain} without backquotes for what it means in every formula"
     near = unknown_symbol_remedy(name, stated.value.written, allowed) if allowed else ""
-    declare = f"declare it under parameters: {name}"
+    declare = f"declare it under parameters{' or inputs' if stated.scope == 'motion' else ''}: {name}"
+    if near.startswith("use one of"):
+        return f"{near}; or {declare}"
     return f"{near} Otherwise {declare}" if near.endswith("?") else near or declare
 
 

@@ -298,9 +298,14 @@ class _Checker:
                 loop = list(walk)[list(walk).index(name) :]
                 shown = [*loop, name] if len(loop) <= _SHOWN else [*loop[:_SHOWN], "…", name]
                 joints = [joint.name for body in loop if (joint := self.bodies[body].joint) is not None]
+                is_one = len(loop) == 1
                 yield Problem(
-                    f"cycle of joints: bodies {' -> '.join(shown)} carry each other",
-                    f"{len(loop)} bodies; their joints are {listed(joints)}",
+                    f"body '{name}' carries itself"
+                    if is_one
+                    else f"cycle of joints: bodies {' -> '.join(shown)} carry each other",
+                    f"its joint {listed(joints)}"
+                    if is_one
+                    else f"{len(loop)} bodies; their joints are {listed(joints)}",
                     "joints form a tree that starts at the base",
                     "give one of these joints a parent that none of the bodies carries, such as 'world'; "
                     "a loop of the mechanism itself is cut at one joint and closed by a closure (sf.Closure)",
