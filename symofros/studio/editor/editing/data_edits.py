@@ -26,6 +26,7 @@ SECTIONS = (
     "closures",
     "couplings",
     "nonholonomic",
+    "switches",
     "options",
 )
 # The same of a diagram's file.

@@ -5,6 +5,7 @@ from __future__ import annotations
 from collections.abc import Iterable
 from typing import Any
 
+from symofros.description import WORLD
 from symofros.description.yaml import VERSION, default_joint_name
 from symofros.studio.editor.editing.data_edits import SECTIONS, Edit, Path, edited, fault, same, section_of
 from symofros.studio.editor.editing.formulas import formulas, names_in
@@ -17,7 +18,7 @@ _BETWEEN = ("connections", "contacts", "closures", "couplings", "nonholonomic", 
 
 
 def extracted(data: Any, bodies: list[str]) -> Json:
-    """A document of some bodies, what connects them, and the parameters and inputs that they use.
+    """A document of some bodies, what connects them and joins them to the ground, and the names that they use.
 
     Args:
         data: The document that they are in.
@@ -27,6 +28,7 @@ def extracted(data: Any, bodies: list[str]) -> Json:
         EditError: There is no such body, or one is the base.
     """
     stated = section_of(data, "bodies")
+    ground = {WORLD, *(name for name, body in stated.items() if not section_of(body, "joint"))}
     for name in bodies:
         if not section_of(stated.get(name), "joint"):
             raise fault(
@@ -43,10 +45,14 @@ def extracted(data: Any, bodies: list[str]) -> Json:
         kept = {
             name: entry
             for name, entry in section_of(data, section).items()
-            if _belongs(section, name, entry, set(bodies), _symbols(part), foreign)
+            if _belongs(section, name, entry, set(bodies), ground, _symbols(part), foreign)
         }
         if kept:
             part[section] = kept
+    held = {name for section in _BETWEEN for name in section_of(part, section)}
+    switches = {name: entry for name, entry in section_of(data, "switches").items() if name in held}
+    part |= {"switches": switches} if switches else {}
+    part["bodies"] = {**_base_in_use(part, data), **part["bodies"]}
     used = {name for _, text in formulas(part) for name in names_in(text)}
     for section in ("parameters", "inputs"):
         kept = {name: entry for name, entry in section_of(data, section).items() if name in used}
@@ -64,14 +70,37 @@ def _rooted(body: Json, bodies: list[str]) -> Json:
     return {**body, "joint": joint}
 
 
-def _belongs(section: str, name: str, entry: Any, bodies: set[str], own: set[str], foreign: set[str]) -> bool:
-    """Whether something between bodies concerns those of the part, and no others."""
+def _base_of(data: Any) -> str | None:
+    """The body without a joint."""
+    return next((name for name, body in section_of(data, "bodies").items() if not section_of(body, "joint")), None)
+
+
+def _base_in_use(part: Json, data: Any) -> Json:
+    """The base of a document, with those of its frames that links of a part name; empty where they name none."""
+    base = _base_of(data)
+    if base is None:
+        return {}
+    named = [anchor for _, anchor in anchors(part) if anchor.get("body") in (WORLD, base)]
+    used = {anchor.get("frame") for anchor in named}
+    frames = {name: frame for name, frame in _frames(data, base).items() if name in used}
+    is_named = any(anchor.get("body") == base for anchor in named)
+    return {base: {"frames": frames} if frames else {}} if frames or is_named else {}
+
+
+def _frames(data: Any, body: str) -> Json:
+    return section_of(section_of(section_of(data, "bodies"), body), "frames")
+
+
+def _belongs(
+    section: str, name: str, entry: Any, bodies: set[str], ground: set[str], own: set[str], foreign: set[str]
+) -> bool:
+    """Whether something between bodies concerns those of the part, and no others but the ground."""
     alone = {section: {name: entry}}
     held = [anchor.get("body") for _, anchor in anchors(alone)]
     used = {symbol for _, text in formulas(alone) for symbol in names_in(text)}
     used |= {speed for _, speeds in speeds_as_keys(alone) for speed in speeds}
     if held:
-        return all(body in bodies for body in held) and not used & foreign
+        return not bodies.isdisjoint(held) and all(body in bodies | ground for body in held) and not used & foreign
     return bool(used & own) and not used & foreign
 
 
@@ -90,6 +119,8 @@ def _symbols(data: Any) -> set[str]:
 def insertion(data: Any, part: Json, parent: str | None, frame: str | None) -> list[Edit]:
     """The edits that put a part into a document; what clashes is renamed, equal parameters and inputs are shared.
 
+    Links to the ground stay there: frames of the part's base become frames of the document's, equal ones are shared.
+
     Args:
         data: The document.
         part: Part as `extracted` makes it.
@@ -100,6 +131,7 @@ def insertion(data: Any, part: Json, parent: str | None, frame: str | None) -> l
         EditError: The part is unusable.
     """
     part = _distinct(data, part)
+    base = _base_of(data)
     edits: list[Edit] = []
     for section in SECTIONS:
         for name, entry in section_of(part, section).items():
@@ -107,6 +139,13 @@ def insertion(data: Any, part: Json, parent: str | None, frame: str | None) -> l
                 continue
             there = section_of(data, section)
             if section in ("parameters", "inputs") and name in there and same(there[name], entry):
+                continue
+            if section == "bodies" and name == base:
+                edits += [
+                    Edit("set", (section, name, "frames", frame), value)
+                    for frame, value in _frames(part, name).items()
+                    if frame not in _frames(data, name)
+                ]
                 continue
             edits.append(Edit("set", (section, name), _carried(entry, parent, frame) if section == "bodies" else entry))
     return edits
@@ -122,7 +161,7 @@ def _carried(body: Any, parent: str | None, frame: str | None) -> Any:
 
 def _distinct(data: Any, part: Json) -> Json:
     """The part with names that the document does not have yet."""
-    for rename in (_distinct_symbols, _distinct_bodies, _distinct_joints, _distinct_relations):
+    for rename in (_distinct_symbols, _distinct_bodies, _distinct_joints, _distinct_relations, _on_one_base):
         part = rename(data, part)
     return part
 
@@ -169,6 +208,18 @@ def _distinct_relations(data: Any, part: Json) -> Json:
                 known = {*section_of(data, section), *section_of(part, section)}
                 part = _renamed(part, (section, name), _free(name, known))
     return part
+
+
+def _on_one_base(data: Any, part: Json) -> Json:
+    """Frames of the part's base, under the name of the document's."""
+    own, base = _base_of(part), _base_of(data)
+    if own is None or base is None:
+        return part
+    there = _frames(data, base)
+    for name, frame in _frames(part, own).items():
+        if name in there and not same(there[name], frame):
+            part = _renamed(part, ("bodies", own, "frames", name), _free(name, {*there, *_frames(part, own)}))
+    return _renamed(part, ("bodies", own), base)
 
 
 def _joints(data: Any) -> set[str]:

@@ -12,6 +12,7 @@ from symofros.studio.editor.document.parts.parts_library import Library
 from symofros.studio.editor.document.workspace import FileError, Workspace
 from symofros.studio.editor.editing.data_edits import EditError
 from symofros.studio.editor.editing.yaml_edits import with_references
+from symofros.studio.editor.editing.yaml_rendering import block
 from symofros.studio.editor.editing.yaml_spans import YamlText
 from tests.studio.editor.texts import DATA, FILES, TEXTS
 
@@ -67,3 +68,55 @@ def test_the_library_keeps_lists_and_does_not_overwrite(tmp_path: Path) -> None:
         library.part("nothing")
     with pytest.raises(FileError, match="not in the workspace"):
         library.part("../../etc/x")
+
+
+HUNG = """symofros: 1
+parameters: {k: {value: 50.0, unit: N/m}, on: 1.0, h: {value: 1.0, unit: m}}
+bodies:
+  ground: {frames: {hook: {position: [0, 0, h]}, other: {position: [9, 0, 0]}}}
+  bob:
+    joint: {kind: prismatic, axis: [0, 0, 1]}
+    inertia: {mass: 1.0}
+connections:
+  spring: {first: {body: world, frame: hook}, second: {body: bob}, stiffness: k, length: 1.0}
+contacts:
+  floor: {first: {body: bob}, second: {body: ground, frame: hook}, stiffness: 1.0e+5}
+closures:
+  hold: {first: {body: world}, second: {body: bob}, translations: [x]}
+switches:
+  hold: {engaged: on}
+"""
+
+
+def test_a_part_keeps_its_links_to_the_ground(tmp_path: Path) -> None:
+    part = extracted(YamlText(HUNG).root.plain(), ["bob"])
+    assert list(part["bodies"]) == ["ground", "bob"]
+    assert list(part["bodies"]["ground"]["frames"]) == ["hook"]  # None that no link is at.
+    assert {"k", "on", "h"} == set(part["parameters"])
+    assert part["switches"] == {"hold": {"engaged": "on"}}
+    assert not analyse(tmp_path / "part.yaml", "\n".join(block(part, (), 0)) + "\n").problems
+
+
+@pytest.mark.parametrize(
+    ("document", "frame", "body"),
+    [
+        (HUNG, "hook", "ground"),  # An equal frame is shared.
+        (HUNG.replace("[0, 0, h]", "[0, 1, h]"), "hook2", "ground"),
+        (HUNG.replace("ground", "mast"), "hook", "mast"),
+        ("symofros: 1\nbodies:\n  bob:\n    joint: {kind: revolute}\n    inertia: {mass: 1.0}\n", "hook", "ground"),
+        ("symofros: 1\nbodies:\n  base: {}\n", "hook", "base"),
+    ],
+)
+def test_what_holds_a_part_to_the_ground_holds_it_where_it_is_put(
+    document: str, frame: str, body: str, tmp_path: Path
+) -> None:
+    data = YamlText(document).root.plain()
+    part = extracted(YamlText(HUNG).root.plain(), ["bob"])
+    text = with_references(document, insertion(data, part, "bob" if "bob" in data["bodies"] else None, None))
+    found = analyse(tmp_path / "model.yaml", text)
+    assert found.problems == []
+    second = "2" if "spring" in document else ""
+    assert found.data["connections"][f"spring{second}"]["first"]["frame"] == frame
+    assert found.data["contacts"][f"floor{second}"]["second"] == {"body": body, "frame": frame}
+    assert f"hold{second}" in found.data["closures"] and f"hold{second}" in found.data["switches"]
+    assert found.data["bodies"][body]["frames"][frame] == {"position": [0, 0, "h"]}
