@@ -268,8 +268,8 @@ class Session:
         """
         self._consents.give(self.document.analysis.native, body.get("files"))
 
-    def job_request(self, body: Json) -> tuple[str, Json]:
-        """The kind of a job and the request for its worker.
+    def job_request(self, body: Json) -> tuple[str, Json, int, str]:
+        """The kind of a job, the request for its worker, and the revision and the path of its document.
 
         Raises:
             ConsentError: A run would need the user's consent to native code.
@@ -293,7 +293,7 @@ class Session:
         if kind == "export":
             folder = self.workspace.inside(text_of(options, "folder"), ())
             request |= {"folder": str(folder), "root": str(self.workspace.root), "is_diagram": is_diagram}
-        return kind, request
+        return kind, request, document.revision, self.workspace.shown(document.file)
 
     def to_import(self, body: Json, folder: Path) -> Path:
         """The file to import: one of the workspace, or the request's text, put into a folder.

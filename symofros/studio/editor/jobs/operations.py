@@ -32,6 +32,7 @@ from symofros.studio.editor.jobs.stops import events_of
 from symofros.studio.viewer.playing.signals import coordinate_units
 
 POINTS, MAX_POINTS = 1000, 5000
+PERIOD = 1.0  # Of the progress that is shown of a long run [s].
 
 
 def compile_model(request: Json, tell: Tell) -> Json:
@@ -164,16 +165,16 @@ def simulate(request: Json, tell: Tell) -> Json:
     chosen: Json = {key: options[key] for key in ("method", "stabilisation") if options.get(key)}
     chosen |= {key: number_of(options[key], key) for key in ("dt", "rtol", "atol") if options.get(key) is not None}
     inputs = laws_of(options.get("inputs"))
-    shown = -1
+    began = time.perf_counter()
+    shown, told = -1, began
 
     def progress(t: float) -> None:
-        nonlocal shown
-        percent = int(100 * t / t_end) if t_end else 100
-        if percent > shown:
-            shown = percent
-            tell(percent, 100, f"t = {t:.3g} s")
+        nonlocal shown, told
+        percent, now = int(100 * t / t_end) if t_end else 100, time.perf_counter()
+        if percent > shown or now - told > PERIOD:
+            shown, told = percent, now
+            tell(percent, 100, f"t = {t:.3g} s of {t_end:.6g} s")
 
-    began = time.perf_counter()
     run = sf.simulate(
         model,
         start.q,

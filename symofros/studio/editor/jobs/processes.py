@@ -22,8 +22,8 @@ IDLE = 2
 class Job:
     """One piece of work and its process."""
 
-    def __init__(self, key: str, kind: str, revision: int) -> None:
-        self.key, self.kind, self.revision = key, kind, revision
+    def __init__(self, key: str, kind: str, revision: int, path: str) -> None:
+        self.key, self.kind, self.revision, self.path = key, kind, revision, path
         self.state = "running"
         self.progress: Json = {"done": 0, "total": 0, "text": "starting"}
         self.result: Any = None
@@ -37,6 +37,7 @@ class Job:
             "id": self.key,
             "kind": self.kind,
             "revision": self.revision,
+            "path": self.path,
             "state": self.state,
             "progress": self.progress,
             "error": self.error,
@@ -82,14 +83,21 @@ class Jobs:
             if not self._closed and not self._idle and all(job.worker is None for job in self._jobs.values()):
                 self._idle.append(WorkerProcess())
 
-    def start(self, kind: str, request: Json, revision: int = 0) -> Job:
-        """Start a worker.
+    def running(self) -> list[Job]:
+        """Jobs that are not over."""
+        return [job for job in self._jobs.values() if job.state == "running"]
+
+    def start(self, kind: str, request: Json, revision: int = 0, path: str = "") -> Job:
+        """Start a worker; a job of that kind for a document that was left, of which nothing is shown, is cancelled.
 
         Raises:
-            EditError: One of that kind is running.
+            EditError: One of that kind is running for the same document.
         """
+        for left in self.running():
+            if left.kind == kind and left.path != path:
+                self.cancel(left.key)
         with self._lock:
-            running = [job for job in self._jobs.values() if job.kind == kind and job.state == "running"]
+            running = [job for job in self.running() if job.kind == kind]
             if running:
                 raise EditError(
                     f"{kind} is running already",
@@ -98,7 +106,7 @@ class Jobs:
                     "wait for it, or cancel it",
                 )
             self._count += 1
-            job = Job(str(self._count), kind, revision)
+            job = Job(str(self._count), kind, revision, path)
             self._jobs[job.key] = job
             over = [key for key, old in self._jobs.items() if old.state != "running"]
             for key in over[: max(0, len(self._jobs) - KEPT)]:

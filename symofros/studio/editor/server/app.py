@@ -218,7 +218,7 @@ class Editor:
         """Start work on the document as it is now."""
         body = await body_of(request)
         # Its revision at once: others may change the document as soon as this has its turn no more.
-        asked = await self.exclusively(lambda: (*self.session.job_request(body), self.session.document.revision))
+        asked = await self.exclusively(partial(self.session.job_request, body))
         job = await run_sync(partial(self.jobs.start, *asked))
         return JSONResponse({"id": job.key}, 202)
 
@@ -249,10 +249,11 @@ class Editor:
     async def listen(self, _: Request) -> Response:
         """Tell whatever happens, as it happens; to a page, whose first job shall not wait for a worker's imports.
 
-        The document may have changed since the page asked for it.
+        The document may have changed since the page asked for it, and what an earlier page has started may run.
         """
         await run_sync(self.jobs.warm)
-        stream = self.events.join(message("document", self._document_state()))
+        running = [message("job", job.as_json(whole=False)) for job in self.jobs.running()]
+        stream = self.events.join(message("document", self._document_state()), *running)
         return StreamingResponse(stream, media_type="text/event-stream")
 
     async def look(self, request: Request) -> Response:

@@ -220,9 +220,8 @@ def picture(page: Page) -> Picture:
             page.wait_for_timeout(300)  # Movements of the diagram come to rest.
             file = Path(PICTURES) / f"editor-{name}.png"
             page.screenshot(path=file)
-            # Few colours are enough for it, and make it small.
-            Image.open(file).convert("RGB").quantize(255, Image.Quantize.MAXCOVERAGE, dither=Image.Dither.NONE).save(
-                file, optimize=True
-            )
+            # Few colours are enough for it, and make it small; k-means has those of large areas as they are.
+            few = Image.open(file).convert("RGB").quantize(255, Image.Quantize.MAXCOVERAGE, 1, None, Image.Dither.NONE)
+            few.save(file, optimize=True)
 
     return shoot

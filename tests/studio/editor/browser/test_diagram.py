@@ -309,3 +309,18 @@ def test_a_state_machine_is_drawn_by_the_mouse(serve: Serve, page: Page) -> None
     with steps.ended(page):
         page.get_by_role("banner").get_by_role("button", name="Run", exact=True).click()
     expect(steps.results(page).get_by_role("img", name="state_machine.state")).to_be_visible()
+
+
+def test_a_long_path_of_a_model_is_read_in_full(serve: Serve, page: Page, tmp_path: Path) -> None:
+    name = "variants/the_second_of_the_arms_with_a_long_tool_and_a_stiff_wrist.yaml"
+    (tmp_path / "variants").mkdir()
+    shutil.copy(steps.PENDULUM, tmp_path / name)
+    content = f"symofros_diagram: 1\nmodels: {{arm: {{file: {name}}}}}\nblocks: {{}}\n"
+    page.goto(serve("law.yaml", content=content).url)
+    path = page.get_by_label("Model arm").locator(".model-path")
+    for width in (1200, 400):
+        page.set_viewport_size({"width": width, "height": 760})
+        expect(path).to_have_text(name)
+        box = at_rest(path)
+        assert 0 <= box["x"] and box["x"] + box["width"] <= width
+        assert path.evaluate("line => line.scrollWidth <= line.clientWidth")

@@ -286,3 +286,15 @@ def test_moves_of_blocks_are_undone_in_turn_with_edits(arm: Server, page: Page) 
         expect(page.get_by_role("button", name=f"Undo: {name}")).to_be_enabled()
         until(page, lambda: place() == second)
     steps.has_value(page, "m1", "1.5")
+
+
+def test_a_run_is_cancelled_from_a_page_that_was_loaded_again(arm: Server, page: Page) -> None:
+    """A run of a million seconds, by mistake, whose tab is closed: the next page shows it, and can end it."""
+    steps.run(page, "Simulate…")
+    steps.fill(page, "Duration", "1e6")
+    steps.window(page).get_by_role("button", name="Simulate", exact=True).click()
+    expect(page.get_by_role("contentinfo")).to_contain_text("s of 1e+06 s", timeout=steps.JOB)
+    steps.open_editor(page, arm.url)
+    page.get_by_role("contentinfo").get_by_role("button", name="Cancel").click()
+    expect(page.get_by_role("contentinfo").get_by_role("button", name="Cancel")).to_have_count(0)
+    steps.job(page, "Simulate", Duration="0.1")

@@ -269,3 +269,10 @@ def test_a_window_has_help_and_its_page(opened: Serve, page: Page, faults: Fault
     assert faults() == []
     text.scroll_into_view_if_needed()
     picture("help")
+
+
+def test_a_phone_shows_the_diagram_first(serve: Serve, page: Page) -> None:
+    page.set_viewport_size({"width": 400, "height": 760})
+    steps.open_editor(page, serve("new.yaml").url)
+    page.get_by_role("button", name="Open an example").click()
+    expect(steps.window(page)).to_contain_text("Double pendulum")

@@ -187,6 +187,23 @@ def test_an_error_is_taken_apart(error: Exception, expected: tuple[str, ...]) ->
     assert tuple(error_of(error).values()) == expected
 
 
+def test_a_long_run_says_every_second_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
+    """A hundredth of a run of a million seconds takes hours: its progress is told by the clock as well."""
+    told: list[str] = []
+
+    def simulate(*_: Any, progress: Any, **__: Any) -> None:
+        for t in (1.0, 2.0, 3.0):
+            progress(t)
+        raise InterruptedError
+
+    monkeypatch.setattr(operations, "PERIOD", 0.0)
+    monkeypatch.setattr(operations.sf, "simulate", simulate)
+    request = {"file": "x.yaml", "text": PENDULUM.read_text(), "options": {"t_end": 1e6}}
+    with pytest.raises(InterruptedError):
+        operations.simulate(request, lambda done, total, text: told.append(text))
+    assert told[-3:] == ["t = 1 s of 1e+06 s", "t = 2 s of 1e+06 s", "t = 3 s of 1e+06 s"]
+
+
 # The machinery by itself, with workers that misbehave.
 
 
@@ -227,6 +244,17 @@ def test_progress_is_reported_during_the_job(monkeypatch: pytest.MonkeyPatch) ->
     _, job, reported = run(monkeypatch, code)
     assert job.over.wait(30) and job.state == "done" and job.result == {"a": 1}
     assert [data["progress"]["done"] for _, data in reported] == [0, 1, 2, 2] and "result" not in reported[-1][1]
+
+
+def test_a_job_of_a_document_that_was_left_gives_way(monkeypatch: pytest.MonkeyPatch) -> None:
+    jobs, first, _ = run(monkeypatch, "import time; time.sleep(60)")
+    assert jobs.running() == [first]
+    with pytest.raises(EditError, match="running already"):
+        jobs.start("x", {})
+    second = jobs.start("x", {}, path="other.yaml")
+    assert first.state == "cancelled" and jobs.running() == [second]
+    assert second.as_json(whole=False)["path"] == "other.yaml"
+    jobs.close()
 
 
 def test_children_of_a_worker_end_with_it(monkeypatch: pytest.MonkeyPatch, tmp_path: Path) -> None:

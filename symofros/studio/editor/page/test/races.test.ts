@@ -205,6 +205,14 @@ test("a job that is over stays so, whatever comes late", async () => {
   expect(now().jobs.compile?.state).toBe("done");
 });
 
+test("a job that an earlier page has started is shown, and can be cancelled", () => {
+  const job = { id: "7", kind: "simulate", revision: 0, state: "running", result: null, error: null };
+  hear({ ...job, path: "other.yaml" } as unknown as Job);
+  expect(now().jobs.simulate).toBeUndefined();
+  hear({ ...job, path: now().document?.path } as unknown as Job);
+  expect(now().jobs.simulate?.id).toBe("7");
+});
+
 const stand = (q1: number) => ({ q: { q1 }, exaggeration: 1, frames: false, forces: false, gap: null, beams: [] });
 const refusal = { error: { object: "", found: "", rule: "", remedy: "" } };
 const slider = (): number | undefined => expected(shownView() as View, now().posing).q["q1"];

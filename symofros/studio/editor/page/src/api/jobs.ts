@@ -162,6 +162,8 @@ export interface Job {
   kind: JobKind;
   /** Revision of the document that it is of. */
   revision: number;
+  /** File of that document. */
+  path: string;
   state: JobState;
   progress: { done: number; total: number; text: string; paused?: boolean };
   result: unknown;

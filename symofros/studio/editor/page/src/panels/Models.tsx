@@ -10,6 +10,8 @@ import { show, useDocument } from "../store/store";
 import { Cell } from "./Cell";
 
 const MOST_FUNCTIONS = 8;
+// Characters of a path that a choice shows in a pane of the usual width.
+const CHOICE = 40;
 
 /** How rich a model's beams are: as its file says, rigid, or some shape functions in each direction they have any. */
 function Functions({ name, model }: { name: string; model: JsonMap }) {
@@ -76,6 +78,7 @@ export function Models() {
                 ))}
               </select>
             </label>
+            {file.length > CHOICE ? <p className="quiet model-path">{file}</p> : null}
             <label>
               Functions
               <Functions name={name} model={model} />

@@ -13,9 +13,16 @@ const PERIOD = 1000;
 
 /** What an event says of a job; its result is fetched. */
 export function hear(job: Job): void {
-  if (now().jobs[job.kind]?.id !== job.id) return;
-  if (job.state === "running") take(job);
-  else void fetchJob(job.id);
+  const { document, jobs } = now();
+  const known = jobs[job.kind];
+  if (known?.id === job.id) {
+    if (job.state === "running") take(job);
+    else void fetchJob(job.id);
+  } else if (job.state === "running" && known?.state !== "running" && job.path === document?.path) {
+    // Another page, or this one before it was loaded again, has started it: it can be cancelled here, too.
+    take(job);
+    void follow(job.kind, job.id);
+  }
 }
 
 /** What a run tells while it goes on; its first words may come before the answer that names the run. */
@@ -95,11 +102,12 @@ async function start(kind: JobKind, options: object): Promise<string | undefined
     async () => (now().document?.path === path ? post<{ id: string }>("api/jobs", { kind, options }) : undefined),
     asked,
   );
-  if (started === undefined || now().document?.path !== path) return undefined;
+  if (started === undefined || path === undefined || now().document?.path !== path) return undefined;
   take({
     id: started.id,
     kind,
     revision: now().document?.revision ?? 0,
+    path,
     state: "running",
     progress: { done: 0, total: 0, text: "" },
     result: null,

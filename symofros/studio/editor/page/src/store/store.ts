@@ -157,7 +157,8 @@ export const useStore = create<State>(() => ({
   notices: [],
   tour: null,
   menu: null,
-  right: "parameters",
+  // On a phone it would lie over the diagram.
+  right: globalThis.matchMedia?.("(max-width: 640px)").matches ? null : "parameters",
   bottom: null,
 }));
 

@@ -20,11 +20,17 @@ export function PartForm({ bodies }: { bodies: string[] }) {
       title="Save as a part"
       onClose={dismiss}
       onSubmit={accept}
-      foot={<Foot word={exists ? "Replace" : "Save"} disabled={name.trim() === ""} />}
+      foot={<Foot word="Save" disabled={exists || name.trim() === ""} />}
     >
       <div className="rows">
-        <span className="quiet">Keeps {bodies.join(", ")}, with the parameters and inputs that its formulas name.</span>
+        <span className="quiet">
+          Keeps {bodies.join(", ")}, what joins them to each other and to the ground, and the parameters and inputs that
+          their formulas name.
+        </span>
         <TextRow title="Name" text={name} onChange={setName} />
+        {exists ? (
+          <span className="quiet">There is a part of that name already; it is kept. Choose another.</span>
+        ) : null}
       </div>
     </Window>
   );
