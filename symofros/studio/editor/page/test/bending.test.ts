@@ -18,6 +18,7 @@ const job = (beams: BentBeam[], revision = 3): Job => ({
   id: "1",
   kind: "simulate",
   revision,
+  path: "arm.yaml",
   state: "done",
   progress: { done: 1, total: 1, text: "" },
   result: { beams },
