@@ -11,7 +11,7 @@ _BODY = """value = []
 for one in (robot.link_map[name].inertial for name in links):
     T = np.eye(4) if one is None or one.origin is None else one.origin
     I = np.zeros((3, 3)) if one is None or one.inertia is None else T[:3, :3] @ one.inertia @ T[:3, :3].T
-    m = one.mass if one and one.mass else 0.0
+    m = float(one.mass) if one and one.mass else 0.0
     value.append([m, *(m * T[:3, 3]), *I[[0, 1, 2, 0, 0, 1], [0, 1, 2, 1, 2, 2]]])"""
 WAYS = ways_of(f"""
 == sizes | num_dofs | value = [robot.num_dofs] * 2

@@ -142,10 +142,10 @@ def _sensed() -> Iterator[tuple[str, Reading]]:
 def _unstated() -> Iterator[tuple[str, Reading]]:
     """A last link, fixed, with the mass that the schema of URDF has where the value is left out: zero."""
     none = _INERTIA.replace("0.2", "0").replace("0.3", "0").replace("0.4", "0")
-    inertial = f"<inertial><mass/>{none}</inertial>"
-    stated = _chain(_FIRST, _SECOND, _FIXED, links=(_A, _B, f'<link name="c">{inertial}</link>'))
-    empty = replace(_REST, name="c", parent=1, mass=0.0, com=ORIGIN, inertia=diagonal(0.0, 0.0, 0.0))
-    yield _of("mass without value", stated, BODY, NEXT, empty, asked=("link_bodies",))
+    links = _A, f'<link name="b"><inertial><mass/>{none}</inertial></link>'
+    stated = _chain(_FIRST.replace("revolute", "prismatic"), _FIXED, links=links)
+    empty = replace(_REST, mass=0.0, com=ORIGIN, inertia=diagonal(0.0, 0.0, 0.0))
+    yield _of("mass without value", stated, hung(BODY, kind="prismatic"), empty, asked=("link_bodies",))
 
 
 def files() -> dict[str, Reading]:
