@@ -76,7 +76,7 @@ def test_solutions_reach_their_goals_and_a_start_is_none(engine: str) -> None:
     plugin, tree = OWN[engine], _TREES["goals of seven hinges"]
     if not plugin.version():
         pytest.skip(needs_extra(f"engine-{engine}", engine))
-    names = [name for name in asked(plugin, tree) if name.startswith("goal_pose")]
+    names = [name for name in asked(plugin, tree) if name.partition(":")[0] == "goal_pose"]
     found = {one.cell.function: one for one in judged(plugin, Job(engine, tree, tuple(names), SEED), Truths())}
     assert len(names) == len(found) and {one.cell.verdict for one in found.values()} == {"right"}
     one = found[names[-1]]
@@ -89,6 +89,8 @@ def test_solutions_reach_their_goals_and_a_start_is_none(engine: str) -> None:
 def test_goals_are_parts_of_one_pose() -> None:
     pose = _of("end_pose", replace(_STATE, q=_STATE.q2))
     np.testing.assert_array_equal(_of("goal_pose"), pose)
+    far = _of("end_pose", replace(_STATE, q=8 * _STATE.q2))
+    np.testing.assert_array_equal(_of("goal_pose_far"), far)
     np.testing.assert_array_equal([*_of("goal_place"), *_of("goal_turn")], pose)
     np.testing.assert_allclose(_of("goal_point"), pose[:3] + pose[3:].reshape(3, 3) @ POINT, atol=1e-15)
 

@@ -42,6 +42,7 @@ def _goals() -> dict[str, Function]:
     of = "of the last link at the solution, of the goal that it has"
     rows = {
         "goal_pose": (f"position and rows of the rotation {of} the pose at q2 (12)", arms.goal_pose),
+        "goal_pose_far": (f"the same {of} the pose at 8 q2, begun as far (12)", arms.goal_pose_far),
         "goal_place": (f"position {of} the position at q2, turned any way (3)", arms.goal_place),
         "goal_turn": (f"rows of the rotation {of} the rotation at q2, anywhere (9)", arms.goal_turn),
         "goal_point": (f"place of the point {POINT} {of} its place at q2, turned any way (3)", arms.goal_point),

@@ -66,6 +66,11 @@ def goal_pose(truth: Truth, s: Point) -> Exact:
     return pose(truth, s._replace(q=s.q2))
 
 
+def goal_pose_far(truth: Truth, s: Point) -> Exact:
+    """Pose of the end at 8 q2 (12): beyond a turn, and as far along slides."""
+    return pose(truth, s._replace(q=8 * s.q2))
+
+
 def goal_place(truth: Truth, s: Point) -> Exact:
     """Position of the end at q2 (3)."""
     return goal_pose(truth, s)[:3]

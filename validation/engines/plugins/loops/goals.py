@@ -36,6 +36,15 @@ ROBOTICS_TOOLBOX = {
         ("ik_NR", "ik_NR", ""),
     )
 }
+# Of slides it asks for limits, which a robot of its own has.
+_LIMITED = "for one in robot.links:\n    if one.isjoint: one.qlim = [-99.0, 99.0]\n"
+ROBOTICS_TOOLBOX |= {
+    name.replace("goal_pose", "goal_pose_far"): way._replace(
+        code=_LIMITED + way.code.replace("q2", "8 * q2"), built=(("import numpy as np", "import numpy as np"),)
+    )
+    for name, way in ROBOTICS_TOOLBOX.items()
+    if name.startswith("goal_pose:ik")
+}
 
 # SAPIEN: poses in singles.
 SAPIEN = {
