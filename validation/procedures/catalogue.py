@@ -98,7 +98,13 @@ _OF_THEIR_OWN: tuple[Procedure, ...] = (
     exchanged.noted,
     exported.planned,
 )
-_DIFFERENTIATED: tuple[Procedure, ...] = (identities.transposed, identities.twice_differentiated, identities.momenta)
+_DIFFERENTIATED: tuple[Procedure, ...] = (
+    identities.balanced,
+    identities.moving_frames,
+    identities.transposed,
+    identities.twice_differentiated,
+    identities.momenta,
+)
 PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
     "double_pendulum": (
         _inputs(True, runs.fixed_steps),
@@ -248,6 +254,7 @@ def first_scene(system: sf.System, assembly: Assembly, backend: Literal["c", "in
         start = sf.assemble(model, q, v)
         q, v = start.q, start.v
     if bool(system.beams):  # Small, as its theory asks for.
-        q, v = SMALL * q, SMALL * v
+        neutral = model.neutral()
+        q, v = model.integrate(neutral, SMALL * model.difference(neutral, q)), SMALL * v
     u = np.linspace(0.3, 0.5, model.nu)
     return Scene(model, system, Manifold.of(assembly), q, v, lambda *_: u, u, backend=backend)

@@ -9,6 +9,7 @@ from collections.abc import Callable, Iterator, Mapping, Sequence
 from typing import Any
 
 import numpy as np
+from scipy.spatial.transform import Rotation
 
 import symofros as sf
 
@@ -124,6 +125,54 @@ def twice_differentiated(scene: Scene) -> Iterator[Cell]:
     products = model.inverse_dynamics_hvp(q, v, a, tau_bar, dq, dv, da)
     contracted = [tau_bar @ change for change in (*changes, by_aq @ dq)]
     yield Cell("Hessian-vector products", off(np.concatenate(products), np.concatenate(contracted)), ROUNDING)
+
+
+def balanced(scene: Scene) -> Iterator[Cell]:
+    """T = v M v / 2; M a + h - Q is inverse dynamics; T + V changes by the power of inputs and of what dissipates."""
+    model, q, v = scene.model, scene.q, scene.v
+    u, still = scene.law(0.0, q, v), 0.0 * v
+    w = np.random.default_rng(SEED).standard_normal(model.nv)
+    M, h, Q = model.dynamics(q, v, 0.0 * u)
+    yield Cell("kinetic energy", off(model.kinetic_energy(q, v), 0.5 * v @ M @ v), ROUNDING)
+    yield Cell("inverse dynamics", off(model.inverse_dynamics(q, v, w), M @ w + h - Q), ROUNDING)
+    a = model.forward_dynamics(q, v, u)
+    driven = model.generalized_force(q, v, u)
+    left = np.abs(M @ a + h - driven).max() / ((np.abs(M) @ np.abs(a)).max() or 1.0)
+    yield Cell("forward dynamics", float(left), ROUNDING)
+    if omitted_orders(scene.system) or any(getattr(body, "loads", ()) for body in scene.system.bodies):
+        return  # Terms that an order leaves out, and loads that follow bodies, have no energy.
+
+    def energy(t: float) -> list[Array]:
+        at, speeds = scene.manifold.retract(q, t * v), v + t * a
+        return [np.atleast_1d(model.kinetic_energy(at, speeds) + model.potential_energy(at))]
+
+    (rate,) = _rates(energy)
+    power = v * (driven - model.generalized_force(q, still, 0.0 * u))
+    size = float(np.abs(v * (M @ a)).sum() + np.abs(v * h).sum()) or 1.0
+    yield Cell("power", abs(float(rate[0] - power.sum())) / size, DIFFERENCED)
+
+
+def moving_frames(scene: Scene) -> Iterator[Cell]:
+    """Velocities, accelerations and Jacobians of frames, against changes of their poses along a motion."""
+    model, q, v = scene.model, scene.q, scene.v
+    a = np.random.default_rng(SEED).standard_normal(model.nv)
+    for frame in model.names.frames[-3:]:
+        J, dJ = model.frame_jacobian(frame, q), model.frame_jacobian_rate(frame, q, v)
+        velocity, acceleration = model.frame_velocity(frame, q, v), model.frame_acceleration(frame, q, v, a)
+        R = model.frame_pose(frame, q)[1]
+
+        def along(t: float, frame: str = frame, R: Array = R) -> list[Array]:
+            at = scene.manifold.retract(q, t * v)
+            p, turned = model.frame_pose(frame, at)
+            place = np.concatenate([p, Rotation.from_matrix(turned @ R.T).as_rotvec()])
+            return [place, model.frame_velocity(frame, at, v + t * a), model.frame_jacobian(frame, at)]
+
+        by_place, by_velocity, by_jacobian = _rates(along)
+        yield Cell(f"velocity of {frame}", off(velocity, by_place), DIFFERENCED)
+        yield Cell(f"acceleration of {frame}", off(acceleration, by_velocity), DIFFERENCED)
+        yield Cell(f"rate of the Jacobian of {frame}", off(dJ, by_jacobian), DIFFERENCED)
+        yield Cell(f"Jacobian of {frame}", off(J @ v, velocity), ROUNDING)
+        yield Cell(f"Jacobian of {frame} and its rate", off(J @ a + dJ @ v, acceleration), ROUNDING)
 
 
 def weighted_curvature(scene: Scene) -> Iterator[Cell]:

@@ -13,13 +13,13 @@ from scipy.spatial.transform import Rotation
 import symofros as sf
 from symofros.generator.passes.count import count_program
 from tests.mechanics.beams.cases import CASES
+from tests.validation.subjects import assert_agrees
+from validation.procedures.equations import identities
 
 ORDERS = ("zeroth_order", "first_order", "all")
 NAMES = ("hub about another axis", "free base, rotary inertia", "two in series", "body hinged to the tip", "tapered")
 # Sums of some hundred terms of size one.
 ROUNDING = 1e-12
-# Central differences: error h^2 and eps/h.
-STEP, DIFFERENCE = 1e-5, 1e-7
 STATES = 4
 
 
@@ -37,57 +37,11 @@ def states(m: sf.Model, rng: np.random.Generator) -> tuple[np.ndarray, np.ndarra
 
 @pytest.mark.parametrize("retain", ORDERS)
 @pytest.mark.parametrize("name", NAMES)
-def test_forward_dynamics_of_beams_inverts_inverse_dynamics(name: str, retain: str, rng: np.random.Generator) -> None:
-    """Ties M, by composite bodies, to M a + h, by accelerations: they share no term."""
-    m = model(name, retain)
-    q, v = states(m, rng)
-    a = rng.standard_normal((STATES, m.nv))
-    M, h, Q = m.dynamics(q, v, np.zeros(m.nu))
-    expected = np.einsum("nij,nj->ni", M, a) + h - Q
-    np.testing.assert_allclose(m.inverse_dynamics(q, v, a), expected, atol=ROUNDING * np.abs(expected).max())
-
-
-@pytest.mark.parametrize("name", NAMES)
-def test_energy_rate_equals_damping_power(name: str, rng: np.random.Generator) -> None:
-    """d(T + V)/dt along the motion is the power of the damping forces, if everything is kept."""
-    m = model(name, "all")
-    q, v = states(m, rng)
-    a = m.forward_dynamics(q, v, np.zeros(m.nu))
-
-    def energy(h: float) -> np.ndarray:
-        return m.kinetic_energy(q + h * v, v + h * a) + m.potential_energy(q + h * v)
-
-    rate = (energy(STEP) - energy(-STEP)) / (2 * STEP)
-    viscous = m.generalized_force(q, v, ()) - m.generalized_force(q, np.zeros(m.nv), ())
-    power = np.sum(v * viscous, axis=-1)
-    assert np.all(power < 0.0)
-    # What the energy gains and loses in its parts is larger than its change.
-    scale = np.abs(m.kinetic_energy(q, v)).max() * np.abs(a).max()
-    np.testing.assert_allclose(rate, power, atol=DIFFERENCE * scale)
-
-
-@pytest.mark.parametrize("retain", ORDERS)
-@pytest.mark.parametrize("name", NAMES)
-def test_frames_move_as_their_poses_do(name: str, retain: str, rng: np.random.Generator) -> None:
-    """Velocity, acceleration and Jacobians of the last frame against differences of its pose; at any order, it is
-    where the deflection puts it."""
-    m = model(name, retain)
-    frame = m.names.frames[-1]
-    q, v = states(m, rng)
-    a = rng.standard_normal((STATES, m.nv))
-    J, J_rate = m.frame_jacobian(frame, q), m.frame_jacobian_rate(frame, q, v)
-    velocity = m.frame_velocity(frame, q, v)
-    np.testing.assert_allclose(velocity, np.einsum("nij,nj->ni", J, v), atol=ROUNDING * np.abs(velocity).max())
-    acceleration = m.frame_acceleration(frame, q, v, a)
-    expected = np.einsum("nij,nj->ni", J, a) + np.einsum("nij,nj->ni", J_rate, v)
-    np.testing.assert_allclose(acceleration, expected, atol=ROUNDING * np.abs(expected).max())
-    (p0, R0), (p1, R1) = (m.frame_pose(frame, q + h * v) for h in (-STEP, STEP))
-    W = np.einsum("nij,nkj->nik", R1 - R0, m.frame_pose(frame, q)[1]) / (2 * STEP)
-    spin = np.stack([W[:, 2, 1], W[:, 0, 2], W[:, 1, 0]], axis=-1)
-    differences = np.concatenate([(p1 - p0) / (2 * STEP), spin], axis=-1)
-    np.testing.assert_allclose(velocity, differences, atol=DIFFERENCE * np.abs(velocity).max())
-    v0, v1 = (m.frame_velocity(frame, q + h * v, v + h * a) for h in (-STEP, STEP))
-    np.testing.assert_allclose(acceleration, (v1 - v0) / (2 * STEP), atol=DIFFERENCE * np.abs(acceleration).max())
+def test_equations_of_beams_belong_together(name: str, retain: str) -> None:
+    """Energies and forces, both ways of the dynamics; frames move as their poses do, at any order."""
+    system = CASES[name].retaining(retain)
+    assert_agrees(identities.balanced, system)
+    assert_agrees(identities.moving_frames, system)
 
 
 @pytest.mark.parametrize("retain", ORDERS)
@@ -119,13 +73,11 @@ def test_orders_mix_in_one_tree(orders: tuple[str, str], rng: np.random.Generato
     """Each beam has its own order; M, h and the frames still belong together."""
     stated = CASES["two in series"].system
     bodies = [replace(body, retain=retain) for body, retain in zip(stated.bodies, orders, strict=True)]
-    m = sf.compile(replace(stated, bodies=tuple(bodies)), sf.Options(backend="interpreter"))
-    q, v = states(m, rng)
-    M, h, Q = m.dynamics(q, v, ())
-    a = rng.standard_normal((STATES, m.nv))
-    expected = np.einsum("nij,nj->ni", M, a) + h - Q
-    np.testing.assert_allclose(m.inverse_dynamics(q, v, a), expected, atol=ROUNDING * np.abs(expected).max())
-    np.testing.assert_allclose(m.kinetic_energy(q, v), 0.5 * np.einsum("ni,nij,nj->n", v, M, v), rtol=ROUNDING)
+    mixed = replace(stated, bodies=tuple(bodies))
+    assert_agrees(identities.balanced, mixed)
+    assert_agrees(identities.moving_frames, mixed)
+    m = sf.compile(mixed, sf.Options(backend="interpreter"))
+    q, _ = states(m, rng)
     (p, _), (other, _) = m.frame_pose("two.tip", q), model("two in series", "all").frame_pose("two.tip", q)
     np.testing.assert_allclose(p, other, rtol=ROUNDING)
 
