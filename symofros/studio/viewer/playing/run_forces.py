@@ -17,6 +17,10 @@ from symofros.studio.viewer.drawing.poses import Posture
 # Share of the records whose largest arrow is no longer than what the scale is chosen by: impacts are short and large.
 _USUAL = 0.95
 _ROUNDING = 1e-9
+_REPEATED = (
+    "constraints repeat others: how these and the joints of their loops share forces is undetermined; "
+    "the least forces of the constraints are drawn"
+)
 
 
 class _Wrenches(NamedTuple):
@@ -61,6 +65,7 @@ class RunForces:
             "forces": 0.0 if force * size <= _ROUNDING * moment else force,
             "moments": 0.0 if moment <= _ROUNDING * force * size else moment,
         }
+        self._remarks = [_REPEATED] if _repeats(run, tree.system) else []
         self.scales = {layer: ArrowScale.of(layer, usual[layer], size) for layer in ARROWS}
 
     def _usual(self, layer: str) -> float:
@@ -110,7 +115,17 @@ class RunForces:
         for layer, scale in self.scales.items():
             if layer in layers:
                 texts.append(f"no {layer} in this run" if scale is None else scale.legend)
-        return texts
+        return [*texts, *self._remarks] if texts else []
+
+
+def _repeats(run: Trajectory, system: System) -> bool:
+    """Whether constraints repeat others at the start of a run; not asked where switches or contacts take them away."""
+    model = run.model
+    if not model.nc or system.switches or model.names.contacts:
+        return False
+    states = run.z[0] if model.nz else None
+    _, _, rank = model.constrained_dynamics(run.q[0], run.v[0], run.u[0], par=run.par, t=run.t[0], z=states)
+    return 0 <= int(rank) < model.nc
 
 
 def _vectors(wrenches: _Wrenches, layer: str) -> Array:

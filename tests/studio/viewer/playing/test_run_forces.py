@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from dataclasses import replace
 from functools import cache
 from pathlib import Path
 
@@ -49,6 +50,19 @@ def test_joint_and_closure_hold_a_body_by_newtons_law() -> None:
         held = [next(f for tail, f in found if np.allclose(tail, end, atol=1e-9)) for end in ends]
         assert np.linalg.norm(held[1]) > 0.5
         np.testing.assert_allclose(sum(held) + GRAVITY, acceleration, atol=1e-3)
+
+
+def test_a_loop_that_is_closed_more_than_needed_says_that_its_forces_are_not_unique() -> None:
+    """A plane four-bar whose closure holds its third direction as well, which its joints do already."""
+    mechanism, _, forces = loop()
+    assert len(forces.legend(FORCES)) == 1
+    (closure,) = mechanism.system.constraints
+    more = Mechanism(replace(mechanism.system, constraints=[replace(closure, translations=list("xyz"))]))
+    model = sf.compile(more.system)
+    start = sf.assemble(model, [0.6, 0.0, 0.0], held=(model.names.v[0],)).q
+    run = sf.simulate(model, start, t_end=0.01, dt=1e-3)
+    drawn = RunForces(run, more.tree, more.drawing())
+    assert "undetermined" in drawn.legend(FORCES)[1] and drawn.legend(frozenset()) == []
 
 
 def test_a_beating_of_rounding_is_no_moment_and_hidden_layers_have_no_arrows() -> None:
