@@ -25,9 +25,10 @@ from symofros.simulation.analysis.beam_theory import (
 from symofros.simulation.analysis.force_states import rest_with_states
 from symofros.simulation.analysis.friction import friction_curve
 from symofros.simulation.analysis.kinematics.assembly import free_speeds
-from symofros.simulation.analysis.kinematics.facing import refuse_opposite
+from symofros.simulation.analysis.kinematics.consistency import Refusal, consistent_jacobian
 from symofros.simulation.analysis.mass_matrix import mass_matrix
 from symofros.simulation.analysis.reach import reach_of
+from symofros.simulation.analysis.rest_linearisation import growing
 from symofros.simulation.analysis.rest_search import Balance, Search, leaving
 from symofros.simulation.analysis.states import check_search, given_configuration, given_inputs
 
@@ -36,6 +37,12 @@ _BLAMED = 0.05
 # Changes of speed over which friction is looked at [rad/s or m/s]; joints shown that would creep.
 _FRICTION_SPEEDS = np.concatenate([[0.0], np.geomspace(1e-9, 1e3, 193)])
 _SHOWN = 6
+_STEADY = Refusal(
+    EquilibriumError,
+    "a motion with these speeds",
+    "in a steady motion phi = 0, G v = b and 0 = gamma: the constraints need no acceleration of these speeds",
+    "speeds that sf.assemble gives, q and t at which inputs stand still, or coordinates of which v stays the same",
+)
 
 
 @dataclass(frozen=True)
@@ -114,7 +121,8 @@ def equilibrium(
     Raises:
         AssemblyError: A closure is closed the wrong way round.
         BeamTheoryError: A beam is bent beyond the limit, or its theory has no equilibrium here.
-        EquilibriumError: None was found; names the coordinate with the largest imbalance.
+        EquilibriumError: None was found; names the coordinate with the largest imbalance. Or the speeds are not those
+            of a steady motion on the constraints.
         UnknownNameError: `held` names something that is not a speed.
         SymofrosError: tolerance or iterations is out of range.
     """
@@ -138,7 +146,8 @@ def equilibrium(
     if not left <= max(tolerance, 1e-9):
         _refuse_without_rest(model, bendings, end.count)
         raise EquilibriumError(_no_balance(balance, end, tolerance, remarks))
-    refuse_opposite(moving, q, u, par)
+    moves = np.any(v) or model.record.timed or model.record.prescribed_names
+    consistent_jacobian(moving, (q, v, np.zeros(moving.nv) if moves else None, u), par, t, _STEADY)
     refuse_beyond(model, bendings, beam_limit, "the equilibrium")
     effort = np.zeros(model.nv)
     held_rows = np.setdiff1d(np.arange(model.nv), free)
@@ -230,14 +239,15 @@ def _with_left_out(balance: Balance, end: Search, bendings: tuple[BeamBending, .
 
 
 def _unstable_notes(balance: Balance, end: Search) -> tuple[str, ...]:
-    """A note on a rest that does not stay: an upright pendulum's, not a hanging one's."""
-    found = leaving(balance, end)
+    """A note on a rest, or a motion, that does not stay: an upright pendulum's, not a hanging one's."""
+    found = growing(balance, end) if balance.moves else leaving(balance, end)
     if found is None:
         return ()
     name = balance.model.names.v[found[0]]
+    what, how = ("motion", "") if balance.moves else ("rest", " without damping")
     return (
-        f"this rest is unstable: moved by a little, '{name}' leaves it at {found[1]:.3g} 1/s without damping; guess"
-        " nearer to the rest that is meant, or hold it",
+        f"this {what} is unstable: moved by a little, '{name}' leaves it at {found[1]:.3g} 1/s{how}; guess nearer"
+        f" to the {what} that is meant, or hold it",
     )
 
 

@@ -12,11 +12,11 @@ from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
 from symofros.simulation.analysis.force_states import kink_notes
-from symofros.simulation.analysis.imbalance import imbalance_notes
-from symofros.simulation.analysis.kinematics.facing import refuse_opposite
+from symofros.simulation.analysis.imbalance import ROUNDED, changing_notes, imbalance_notes, rounding
+from symofros.simulation.analysis.kinematics.consistency import consistent_jacobian
 from symofros.simulation.analysis.rest_linearisation import functions_of_modes, matrix_at_rest
 from symofros.simulation.analysis.rigid_motions import Complex, RigidMotions, rigid_motions
-from symofros.simulation.analysis.state_space import state_space
+from symofros.simulation.analysis.state_space import ON_CONSTRAINTS, about
 from symofros.simulation.analysis.states import given_configuration, given_inputs
 from symofros.simulation.analysis.unresolved_modes import Vibrations, judges, resolution_notes, too_high
 
@@ -40,8 +40,9 @@ class Modes:
         shapes: Coordinates of each mode, scaled to a largest entry of 1 (nv, k); zeros where states of forces alone
             change.
         bendings: Bending of each beam in the state, with the error of its theory.
-        notes: Remarks: a state in which forces do not balance, beams whose theory errs by more than a per cent or
-            whose functions are too few for a mode, forces and rates of states of forces that have a kink.
+        notes: Remarks: a state in which forces do not balance, a motion along which the equations change, beams whose
+            theory errs by more than a per cent or whose functions are too few for a mode, forces and rates of states of
+            forces that have a kink.
         too_high: How far each frequency is above the one of beams with enough shape functions, relative (k): an
             estimate (docs/theory/beams.md, section 10); NaN where there is none, as of rods and of what does not
             oscillate.
@@ -103,13 +104,13 @@ def modes(
         z: States of forces (nz); the neutral ones, zeros, if not given.
 
     Raises:
-        AssemblyError: A closure is closed the wrong way round.
+        AssemblyError: The state violates the constraints, or a closure is closed the wrong way round.
         BeamTheoryError: A beam is bent beyond the limit.
     """
     model.record.refuse_rigid_contacts("modes")
     v = np.zeros(model.nv) if v is None else vector("v", model.by_name("v", v), model.nv)
     state = (given_configuration(model, q), v, vector("u", given_inputs(model, u), model.nu))
-    refuse_opposite(model, state[0], state[2], par)
+    consistent_jacobian(model.with_precision("double"), (*state[:2], None, state[2]), par, t, ON_CONSTRAINTS)
     states = np.zeros(model.nz) if z is None else vector("z", model.by_name("z", z), model.nz)
     judged = judges(model, par)
     if judged:
@@ -123,7 +124,11 @@ def modes(
     refuse_beyond(model, bendings, beam_limit, "the state of the modes")
     M = model.mass_matrix(state[0], u=state[2], par=par) if model.has("mass_matrix") else np.eye(model.nv)
     inertia = np.where(np.diagonal(M) > 0.0, np.diagonal(M), 1.0)
-    s, changes, rigid = _motions(A, basis, inertia)
+    shaken = None
+    if np.any(state[1]):  # At rest rounding of A tells as much (7c).
+        moved = model.integrate(state[0], np.full(model.nv, ROUNDED))
+        shaken = np.linalg.eigvals(_linearised(model, moved, *state[1:], states, par, t)[0]).astype(np.complex128)
+    s, changes, rigid = _motions(A, basis, inertia, shaken)
     others = np.flatnonzero(~rigid.zeros & (s.imag >= 0.0))
     order = [*rigid.chosen, *others[np.argsort(np.abs(s[others]), kind="stable")]]
     s = s[order]
@@ -145,13 +150,35 @@ def modes(
             A, basis, _ = _linearised(model, q, v, state[2], states, par, t)
             return _motions(A, basis, inertia)[0]
 
-        notes = (*imbalance_notes(model.with_precision("double"), (*state, states), par, t, spectrum), *notes)
+        def matrix(q: Array, u: Array, t: float) -> Array:
+            A, basis, _ = _linearised(model, q, state[1], u, states, par, t)
+            return np.asarray(basis @ A @ basis.T)
+
+        double = model.with_precision("double")
+        notes = (
+            *(
+                imbalance_notes(double, (*state, states), par, t, spectrum)
+                or changing_notes(double, state, t, matrix, s, changes[:, order])
+            ),
+            *notes,
+        )
     return Modes(s, size, damping, shapes, bendings, notes, z_shapes, errors)
 
 
-def _motions(A: Array, basis: Array, inertia: Array) -> tuple[Complex, Complex, RigidMotions]:
-    """Eigenvalues, which are 0 of rigid motions, their changes of the state, and which are rigid."""
+def _motions(
+    A: Array, basis: Array, inertia: Array, shaken: Complex | None = None
+) -> tuple[Complex, Complex, RigidMotions]:
+    """Eigenvalues, which are 0 of rigid motions, their changes of the state, and which are rigid.
+
+    Args:
+        A: Matrix of the independent changes (k, k).
+        basis: Changes of the state of each (2 nv + nz, k).
+        inertia: Diagonal of the mass matrix (nv).
+        shaken: Eigenvalues where the state is moved by rounding (k), if those of A may be rounding.
+    """
     s, vectors = np.linalg.eig(A)
+    if shaken is not None:
+        s = np.where(rounding(s, shaken), 0.0, s)
     changes = np.asarray(basis @ vectors, dtype=np.complex128)
     rigid = rigid_motions(A, basis, s, changes, inertia)
     return np.where(rigid.zeros, 0.0, s).astype(np.complex128), changes, rigid
@@ -175,5 +202,5 @@ def _linearised(
         A = matrix_at_rest(model.with_precision("double"), q, u, par, t)
         if A is not None:
             return A, np.eye(2 * model.nv), True
-    linear_model = state_space(model, q, v, u, par=par, t=t, z=z if model.nz else None)
+    linear_model = about(model.with_precision("double"), q, v, u, par=par, t=t, z=z if model.nz else None)
     return linear_model.A, linear_model.basis, False

@@ -17,6 +17,7 @@ from symofros.runtime.constrained import HALVINGS, LARGEST_STEP, null_space, pse
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.mass_matrix import mass_matrix
 from symofros.simulation.analysis.reach import Reach
+from symofros.simulation.analysis.states import prescribed_rates
 
 Indices = npt.NDArray[np.intp]
 # Rounding of a force at a configuration, relative to the forces that moving by the reach brings.
@@ -66,6 +67,11 @@ class Balance:
     def n(self) -> int:
         """Number of speeds of the mechanism, without states of forces."""
         return self.model.nv - len(self.model.record.state_names)
+
+    @property
+    def moves(self) -> bool:
+        """Whether anything does, prescribed motions included."""
+        return bool(np.any(self.v[: self.n]) or np.any(prescribed_rates(self.model, self.u)))
 
     @property
     def rows(self) -> Indices:
@@ -324,11 +330,11 @@ def leaving(balance: Balance, end: Search) -> tuple[int, float] | None:
 
     Returns:
         Speed that takes part most, by its reach, and sqrt(-k_i), the rate without damping [1/s]; None of a rest that is
-        not unstable so, and of steady motions.
+        not unstable so.
     """
     model, free = balance.model, balance.free
     K, M = balance.stiffness(end.q, end.v, end.lam), balance.mass(end.q)[np.ix_(free, free)]
-    if np.any(end.v[: balance.n]) or not (np.all(np.isfinite(K)) and np.all(np.isfinite(M))):
+    if not (np.all(np.isfinite(K)) and np.all(np.isfinite(M))):
         return None
     Z = null_space(balance.jacobian(end.q)[:, free], model.record.measures.of_speeds(free))
     K = K[np.ix_(free, free)] + K[np.ix_(free, balance.searched)] @ _following(K, end.R, balance).by_q

@@ -11,12 +11,19 @@ import numpy.typing as npt
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, numeric
 from symofros.base.measures import Measures
-from symofros.errors import SymofrosError
+from symofros.errors import AssemblyError, SymofrosError
 from symofros.runtime.constrained import null_space, pseudo_inverse
 from symofros.runtime.model import ArrayLike, Model, Output
-from symofros.simulation.analysis.kinematics.facing import refuse_opposite
+from symofros.simulation.analysis.kinematics.consistency import Refusal, consistent_jacobian
 from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
 from symofros.simulation.analysis.states import given_inputs
+
+ON_CONSTRAINTS = Refusal(
+    AssemblyError,
+    "the state",
+    "a linear model is about a state with phi = 0 and G v = b",
+    "q and v from sf.assemble or model.project",
+)
 
 
 @dataclass(frozen=True)
@@ -66,7 +73,7 @@ def state_space(
         z: States of forces (nz); the neutral ones, zeros, if not given.
 
     Raises:
-        AssemblyError: A closure is closed the wrong way round.
+        AssemblyError: The state violates the constraints, or a closure is closed the wrong way round.
         UnknownNameError: No such output or frame.
         SymofrosError: The accelerations have no derivatives, as where the mass matrix is singular.
     """
@@ -74,7 +81,22 @@ def state_space(
     model = model.with_precision("double")
     v = np.zeros(model.nv) if v is None else numeric("v", model.by_name("v", v))
     u = given_inputs(model, u)
-    refuse_opposite(model, q, u, par)
+    consistent_jacobian(model, (q, v, None, u), par, t, ON_CONSTRAINTS)
+    return about(model, q, v, u, outputs=outputs, par=par, t=t, z=z)
+
+
+def about(
+    model: Model,
+    q: ArrayLike,
+    v: Array,
+    u: Array,
+    *,
+    outputs: Sequence[Output] = (),
+    par: ArrayLike | None = None,
+    t: float = 0.0,
+    z: ArrayLike | None = None,
+) -> StateSpace:
+    """`state_space` of a model in double precision about a state that may be off the constraints by a little."""
     A, B, C, D = model.linearize(q, v, u, outputs=outputs, par=par, t=t, z=z)
     if not np.all(np.isfinite(A)):
         configuration = numeric("q", model.by_name("q", q))

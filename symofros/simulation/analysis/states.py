@@ -38,6 +38,12 @@ def given_inputs(model: Model, u: ArrayLike | None) -> Array:
     return at_unit_length(model.record, "u", stated)
 
 
+def prescribed_rates(model: Model, u: Array) -> Array:
+    """Rates (nu) of inputs (nu) that are coordinates of prescribed motions, as u states them; zeros of others."""
+    names = model.names.u
+    return np.array([u[names.index(f"d{name}")] if f"d{name}" in names else 0.0 for name in names])
+
+
 def check_search(what: str, tolerance: float, iterations: int = 1, *, below: float = math.inf) -> None:
     """Refuse a tolerance that nothing meets or everything does, and a number of steps that is none.
 

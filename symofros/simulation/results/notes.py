@@ -195,6 +195,11 @@ NOTES: Mapping[str, NoteKind] = {
         "modes are asked for at a state that moves on, to where the linearised equations are others",
         "the state that `sf.equilibrium` finds",
     ),
+    "changing equations": NoteKind(
+        "the linearised equations change along this motion, for a mode by … % in … s",
+        "modes are asked for about a motion on which, or at a time at which, the equations do not stay what they are",
+        "coordinates and speeds in which they do, as along axes that turn with the motion; a run of the motion",
+    ),
     "regulated motion": NoteKind(
         "model '…' is not at rest in its first state with the nominal inputs: '…' accelerates by …",
         "a regulator (`LQR`) is about a state in which its model does not stay",
@@ -206,8 +211,8 @@ NOTES: Mapping[str, NoteKind] = {
         "less load, or theory: strain",
     ),
     "unstable rest": NoteKind(
-        "this rest is unstable: moved by a little, '…' leaves it at … 1/s without damping",
-        "a rest that `sf.equilibrium` found is one from which forces with a potential drive the mechanism away",
+        "this … is unstable: moved by a little, '…' leaves it at … 1/s…",
+        "forces with a potential leave a rest that `sf.equilibrium` found, or a mode about its steady motion grows",
         "a guess nearer to the rest that is meant, or held coordinates",
     ),
     "many rests": NoteKind(

@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+import re
 from typing import Any
 
 import numpy as np
@@ -9,6 +10,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from tests.models import interpreted
 
 STRIP: dict[str, Any] = {"rhoA": 2.0, "EI_z": 3e3, "EI_y": 5e3, "GJ": 2e3, "rhoJ": 0.04, "damping": 1e-3}
 # Largest difference of frequencies, relative: the eigenvalues of the two matrices, which agree to rounding of M^-1.
@@ -82,3 +84,32 @@ def test_a_model_of_named_functions_keeps_to_them() -> None:
 
 def _made(model: sf.Model, name: str) -> bool:
     return (name, "") in model._kernels
+
+
+@pytest.mark.parametrize("driven", ["held", "prescribed"])
+def test_a_bead_on_a_turning_hoop_leaves_the_bottom_beyond_the_critical_speed(driven: str) -> None:
+    """At sqrt(Omega^2 - g/R) where the hoop is driven, whoever states so; it stays at cos theta = g/(R Omega^2)."""
+    prescribed, speed = driven == "prescribed", 6.0
+    hoop = sf.RigidBody("hoop", sf.Joint("h", "revolute", prescribed=prescribed), sf.Inertia(1.0, moments=(0.1,) * 3))
+    joint = sf.Joint("theta", "revolute", "hoop", axis=(0, 1, 0))
+    made = interpreted(sf.System("bead", (hoop, sf.RigidBody("bead", joint, sf.Inertia(0.2, (0, 0, -0.5))))))
+    how = {"u": [0.0, speed, 0.0]} if prescribed else {"v": {"h": speed}, "held": ["h"]}
+    (note,) = sf.equilibrium(made, **how).notes
+    found = re.match(r"this motion is unstable: moved by a little, 'theta' leaves it at ([\d.]+) 1/s; guess", note)
+    assert found, note
+    assert float(found[1]) == pytest.approx(np.sqrt(speed**2 - 9.81 / 0.5), rel=5e-3)
+    stays = sf.equilibrium(made, {"theta": 1.0}, **how)
+    assert np.cos(stays.q[-1]) == pytest.approx(9.81 / (0.5 * speed**2), rel=1e-9)
+    assert not stays.notes
+
+
+def test_a_shaft_beyond_its_critical_speed_stays_by_forces_of_speeds() -> None:
+    """Laval's rotor in axes that turn with it: K - m Omega^2 < 0, and Coriolis forces hold it."""
+    springs = [sf.Spring(100.0)]
+    bodies = (
+        sf.RigidBody("shaft", sf.Joint("s", "revolute", prescribed=True)),
+        sf.RigidBody("x", sf.Joint("x", "prismatic", "shaft", axis=(1, 0, 0), elements=springs), sf.Inertia(1e-6)),
+        sf.RigidBody("disc", sf.Joint("y", "prismatic", "x", axis=(0, 1, 0), elements=springs), sf.Inertia(1.0)),
+    )
+    rotor = interpreted(sf.System("rotor", bodies))
+    assert not sf.equilibrium(rotor, u=[0.0, 15.0, 0.0]).notes

@@ -189,11 +189,13 @@ FOLLOWING = (("x", "3*y - x"), ("y", "2*x - y"))
 
 
 def test_a_top_that_spins_is_not_judged_by_stiffness_alone() -> None:
+    """Its spin held, it leaves by the centrifugal force, too: at sqrt(g/L + Omega^2)."""
     shaft = sf.RigidBody("shaft", sf.Joint("turn", "revolute", axis=(0, 0, 1)), sf.Inertia(1.0, moments=(1, 1, 1)))
     bob = sf.RigidBody("bob", sf.Joint("q", "revolute", "shaft", axis=(0, 1, 0)), sf.Inertia(2.0, (0, 0, 1.0)))
     made = interpreted(sf.System("upright", (shaft, bob)))
     assert rate_of(sf.equilibrium(made, [0.0, 0.1]), "q") == pytest.approx(math.sqrt(9.81), rel=5e-3)
-    assert sf.equilibrium(made, [0.0, 0.0], [1.0, 0.0], held=["turn"]).notes == ()
+    (note,) = sf.equilibrium(made, [0.0, 0.0], [1.0, 0.0], held=["turn"]).notes
+    assert note.startswith(f"this motion is unstable: moved by a little, 'q' leaves it at {math.sqrt(10.81):.3g} 1/s;")
 
 
 @pytest.mark.parametrize("size", [1e-6, 1.0, 1e3, 1e9])
