@@ -86,7 +86,7 @@ ENDS: dict[int, End] = {
         "interrupted",
         "an event acts again at the same instant: actions follow each other without end",
         "once=True, or a formula that is not zero after the action, such as 'gap + grip'; bodies that come to rest on"
-        " each other need a constraint that engages there",
+        " each other need a constraint that engages there, with `rests`, or a Contact with restitution",
     ),
     Status.MODES_UNDECIDED: End(
         "not converged",

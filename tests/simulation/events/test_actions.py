@@ -199,6 +199,29 @@ def test_bodies_that_a_strike_leaves_at_rest_on_each_other(pull: float, method: 
         assert "need a constraint that engages" in run.outcome.advice
 
 
+@pytest.mark.parametrize("method", ["dopri5", "semi_implicit_euler"])
+@pytest.mark.parametrize("stated", ["speed", "restitution", "rests"])
+def test_a_body_does_not_pass_what_it_bounces_on(stated: str, method: str) -> None:
+    """Flights that are lower than the rounding of a floor's height end in rest, or in words (simulation.md, (4e))."""
+    foot = sf.Frame("foot", (0, 0, -1.3))
+    ball = sf.RigidBody("ball", sf.Joint("z", "prismatic", axis=(0, 0, 1)), sf.Inertia(1.0), frames=[foot])
+    floor, switched = sf.Closure("floor", ("world", None), ("ball", "foot"), ("z",)), sf.Switch("floor", "contact")
+    system = sf.System("bounces", (ball,), (sf.Parameter("contact", 0.0),), constraints=(floor,), switches=(switched,))
+    by_constraint: dict[str, Any] = {"action": {"contact": 1}, "restitution": 0.5}
+    how: dict[str, Any] = {
+        "speed": {"action": {"dz": "-0.5*dz"}},
+        "restitution": by_constraint,
+        "rests": {**by_constraint, "rests": "lam.floor.z"},
+    }
+    strike = {"strike": sf.Event("z - 1.3", "falling", **how[stated])}
+    run = sf.simulate(sf.compile(system), [1.35], t_end=0.5, events=strike, method=method, dt=5e-3)
+    assert run.q.min() > 1.3 - 1e-12 and len(run.events) > 5
+    if stated == "rests":
+        assert run.outcome.kind == "finished" and run.lam[-1] == pytest.approx([9.81], abs=1e-9)
+    else:
+        assert run.outcome.kind == "interrupted" and "Contact with restitution" in run.outcome.advice
+
+
 @pytest.mark.parametrize("failure", [LookupError("no such thing"), KeyboardInterrupt()])
 def test_exceptions_of_a_check_within_a_run_are_raised(failure: BaseException, monkeypatch: pytest.MonkeyPatch) -> None:
     """It can't pass through C: the run ends there, and the exception is raised, or Ctrl-C said, behind it."""

@@ -223,6 +223,52 @@ static double sym_way_of_step(const sym_run *r, const sym_workspace *w, double h
     return largest;
 }
 
+/* Way of a coordinate along which the rate of an event is taken [rad or m]. */
+#define SYM_EVENT_RATE_WAY 1e-5
+
+/* Rate of event i where the step begins, along its first slope, by central differences. Returns 0 or a status. */
+static int32_t sym_event_rate(sym_event_step *step, int32_t i, double *rate) {
+    sym_run *r = step->run;
+    sym_workspace *w = step->memory;
+    const int32_t nv = r->system->nv;
+    double *values = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events, fastest = 0.0, moment;
+    int32_t l, way, status = 0;
+    for (l = 0; l < nv; ++l) fastest = fmax(fastest, fabs(r->v[l]));
+    moment = fastest * step->h > SYM_EVENT_RATE_WAY ? SYM_EVENT_RATE_WAY / fastest : step->h;
+    for (way = -1, *rate = 0.0; way <= 1 && status == 0; way += 2) {
+        for (l = 0; l < nv; ++l) w->stage[l] = way * moment * r->v[l], w->stage[nv + l] = r->v[l] + way * moment * w->k[nv + l];
+        sym_load_chart_state(r, r->t + way * moment, w->stage);
+        status = sym_event_values(r, values);
+        *rate += way * values[i];
+    }
+    return status;
+}
+
+/* An event that has acted where the step begins, is at zero there and moves away from it, but is on the other side at x, though it has
+ * not been found on its way back: *lost, which has passed zero again within the rounding of its begin, (4e); -1: there is none. Returns
+ * 0 or a status. */
+static int32_t sym_find_lost_event(sym_event_step *step, double x, int32_t *lost) {
+    const sym_run *r = step->run;
+    const sym_system *s = r->system;
+    double *values = r->event_values + (SYM_EVENT_ROWS - 1) * s->n_events;
+    int32_t i, at_zero, status = 0;
+    for (i = 0, *lost = -1; r->actions != NULL && i < r->actions->first_mode && *lost < 0; ++i) {
+        double begin, end, rate;
+        if (r->acted_at[i] != r->t || !r->actions->acts[i] || s->event_terminal[i] == -1) continue;
+        status = sym_event_values_within_step(step, x, values), end = values[i];
+        if (status == 0) status = sym_event_values_within_step(step, 0.0, values), begin = values[i];
+        if (status != 0) return status;
+        if (s->event_direction[i] * end < 0.0 || fabs(begin) > fabs(end)) continue;
+        status = sym_event_rate(step, i, &rate);
+        if (status == 0 && rate * end < 0.0) status = sym_event_is_at_zero(step, i, 0.0, SYM_EVENT_RTOL, SYM_EVENT_ATOL, &at_zero);
+        else at_zero = 0;
+        if (status == 0 && at_zero) status = sym_event_is_at_zero(step, i, x, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, &at_zero), at_zero = !at_zero;
+        if (status != 0) return status;
+        if (at_zero) *lost = i;
+    }
+    return status;
+}
+
 /* Events of the step just made, recorded in the order of time, up to the first terminal one or as many as fit: *stop_x is
  * where the step is cut then, else beyond 1. r->event_values becomes the values at the end, of a step that is not cut.
  * Returns 0 or a status. */
@@ -231,7 +277,7 @@ static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *
     sym_event_step step = {r, w, h, dense_ready};
     sym_event_search search;
     double last_x = 2.0;
-    int32_t status;
+    int32_t status, lost = -1;
     *stop_x = 2.0, r->terminal_event = -1, r->first_met = r->n_event_records;
     search.n = s->n_events, search.direction = s->event_direction, search.memory = r->event_values;
     sym_event_search_set_step(&search, r->t, h, sym_way_of_step(r, w, h), r->steps < r->n_from ? 0 : r->steps - r->n_from);
@@ -260,8 +306,19 @@ static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *
         status = sym_load_state_within_step(r, w, h, dense_ready, x);
         if (status == 0) sym_record_event(r, which);
     }
-    if (status == 0) status = sym_keep_event_notes(&step, &search);
+    if (status == 0) status = sym_find_lost_event(&step, fmin(*stop_x, 1.0), &lost);
+    if (status == 0 && lost < 0) status = sym_keep_event_notes(&step, &search);
     if (status != 0) return status;
+    if (lost >= 0) { /* it acts where it has acted: what the step has found lies behind */
+        while (r->n_event_records > r->first_met) {
+            int32_t *found = s->event_terminal + r->event_index[--r->n_event_records];
+            if (*found == -1) *found = -2;
+        }
+        r->terminal_event = lost, *stop_x = 0.0;
+        sym_load_start(r);
+        sym_record_event(r, lost);
+        return 0;
+    }
     if (*stop_x > 1.0) {
         memcpy(r->event_values, r->event_values + (SYM_EVENT_NODES - 1) * s->n_events, (size_t)s->n_events * sizeof(double));
         return 0;

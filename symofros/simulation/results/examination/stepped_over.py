@@ -39,7 +39,7 @@ def stepped_over_note(run: ExaminedRun) -> str:
     """Note on what acts within steps and is passed over (18b); "" where no shorter step shows any."""
     settings, steps = run.settings, run.steps
     run = _from_the_start(run)
-    if settings.realtime or not run.model.nv or steps < 1 or len(run.states[0]) < 2:
+    if settings.realtime or not run.model.nv or steps < 1 or len(run.states[0]) < 2 or not run.span:
         return ""
     function = run.stepper.inputs.callback is not None
     if function and not run.same_inputs_again:
