@@ -80,7 +80,13 @@ def imbalance_notes(
 
 
 def changing_notes(
-    model: Model, state: tuple[Array, Array, Array], t: float, matrix: Matrix, s: Complex, changes: Complex
+    model: Model,
+    state: tuple[Array, Array, Array],
+    t: float,
+    matrix: Matrix,
+    s: Complex,
+    changes: Complex,
+    inertia: Array,
 ) -> tuple[str, ...]:
     """Note on a motion along which the linearised equations change; none where they stay what they are (7g).
 
@@ -91,6 +97,7 @@ def changing_notes(
         matrix: Gives the matrix of the linearised equations elsewhere on the motion.
         s: Eigenvalues, of rigid motions 0 (k).
         changes: Changes of the state of each (2 nv + nz, k).
+        inertia: Diagonal of the mass matrix (nv), above zero.
     """
     q, v, u = state
     onwards = prescribed_rates(model, u)
@@ -100,9 +107,8 @@ def changing_notes(
     s, X, nv = s[moves], changes[:, moves], model.nv
     span = min(1.0 / float(np.abs(s).min()), _FARTHEST / going if going else np.inf)
     change = matrix(model.integrate(q, span * v), u + span * onwards, t + span) - matrix(q, u, t)
-    inertia = np.diagonal(model.mass_matrix(q, u=u)) if model.has("mass_matrix") else np.ones(nv)
     scale = np.ones(X.shape)  # Coordinates in one unit, speeds in theirs of each mode.
-    scale[: 2 * nv] = np.sqrt(np.where(inertia > 0.0, inertia, 1.0))[np.r_[0:nv, 0:nv], np.newaxis]
+    scale[: 2 * nv] = np.sqrt(inertia)[np.r_[0:nv, 0:nv], np.newaxis]
     scale[nv : 2 * nv] /= np.abs(s)
     shares = np.linalg.norm(scale * (change @ X), axis=0) / (np.abs(s) * np.linalg.norm(scale * X, axis=0))
     if not shares.max() > _NOTED:

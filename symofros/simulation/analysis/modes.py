@@ -158,7 +158,7 @@ def modes(
         notes = (
             *(
                 imbalance_notes(double, (*state, states), par, t, spectrum)
-                or changing_notes(double, state, t, matrix, s, changes[:, order])
+                or changing_notes(double, state, t, matrix, s, changes[:, order], inertia)
             ),
             *notes,
         )
