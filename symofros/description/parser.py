@@ -75,6 +75,9 @@ _OTHERWISE = {
     "atanh": "log((1 + x)/(1 - x))/2",
 }
 
+# What compares or joins conditions elsewhere, and what does here.
+_COMPARING = "<>=!&|"
+_CONDITIONS = "a condition is a formula that counts above zero: a - b for a > b, min(a, b) for and, max(a, b) for or"
 _PRODUCTS = "write products with '*', and numbers without units: they are in SI, angles in radians"
 
 
@@ -228,7 +231,8 @@ def tokenize(text: str) -> list[Token]:
             word = _WORD.match(text, at)
             if word is not None:
                 raise ExpressionError(text, f"'{word.group():.60}' is neither a number nor a name", at, _PRODUCTS)
-            raise ExpressionError(text, f"{text[at]!r} is not allowed in a formula", at)
+            remedy = _CONDITIONS if text[at] in _COMPARING else ""
+            raise ExpressionError(text, f"{text[at]!r} is not allowed in a formula", at, remedy)
         kind, token, start = match.lastgroup, match.group(match.lastgroup), match.start(match.lastgroup)
         if kind == "name" and DUNDER.search(token):
             raise ExpressionError(text, f"'{token}' is not a legal name", start)

@@ -183,7 +183,7 @@ def _examined(task: PlannedRun, ended: Ended, given: Given) -> Examined:
 
     def repeat(first: int, t_end: float, refinements: int, method: str | None = None) -> Sequence[Array] | None:
         o = task.options
-        once = replace(o, realtime=False, method=method or o.method)
+        once = replace(o, realtime=False, method=method or o.method, adaptive=False if method else o.adaptive)
         if (refinements or method) and h:
             once = replace(once, dt=0.5**refinements * h)
         elif refinements:

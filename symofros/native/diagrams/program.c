@@ -185,6 +185,14 @@ SYM_EXPORT int32_t sym_program_parameter(const sym_program *program, const char 
     return i < m->npar ? i : -1;
 }
 
+SYM_EXPORT void sym_program_set(sym_program_instance *instance, int32_t i, double value) {
+    const sym_program *p = instance->program;
+    int32_t k;
+    instance->par[i] = value;
+    for (k = 0; instance->diagram.begun && k < p->n_kept; ++k)
+        if (p->kept[k].from == i) instance->diagram.u[p->kept[k].input] = value;
+}
+
 SYM_EXPORT double sym_program_present(const sym_program_instance *instance, int32_t i) {
     const sym_program *p = instance->program;
     int32_t k;

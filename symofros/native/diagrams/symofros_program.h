@@ -7,7 +7,7 @@
  *     status = sym_program_advance(square, 0.001);   // square->signals are those of that time
  *
  * After sym_program_init nothing allocates; a copy of the memory, put back in its place, is the program as it was. Set
- * square->par and call sym_program_prepare to change parameters. The header of a program names the entries of its arrays.
+ * square->par and call sym_program_prepare to change parameters; those that actions of events change, by sym_program_set. The header of a program names the entries of its arrays.
  */
 #ifndef SYMOFROS_PROGRAM_H
 #define SYMOFROS_PROGRAM_H
@@ -62,7 +62,7 @@ size_t sym_program_size(const sym_program *program);
  * the constraints. */
 sym_program_instance *sym_program_init(void *memory, size_t size, const sym_program *program);
 /* Evaluate what depends on parameters alone; those that events of mechanisms set begin with what `par` says, and are memory
- * from then on. Returns 0, or SYM_PARAMETERS_REFUSED where they violate a condition of a
+ * from then on, which sym_program_set sets. Returns 0, or SYM_PARAMETERS_REFUSED where they violate a condition of a
  * model's description: nothing moves then (a part's check_parameters = 0 takes them as they come). */
 int32_t sym_program_prepare(sym_program_instance *instance);
 /* The condition of a description that parameters violate, in words; NULL where they violate none. */
@@ -85,6 +85,9 @@ int32_t sym_program_evaluate(sym_program_instance *instance);
 int32_t sym_program_start(sym_program_instance *instance);
 /* Index of a run-time parameter in `par` by its name in the diagram, such as "pd.kp[0]"; -1 where there is none. */
 int32_t sym_program_parameter(const sym_program *program, const char *name);
+/* Set a run-time parameter by its index in `par`, at once also where actions of events have changed it; sym_program_prepare
+ * takes it. */
+void sym_program_set(sym_program_instance *instance, int32_t i, double value);
 /* The present value of a run-time parameter by its index in `par`: what an action of an event has set it to, once that has acted. */
 double sym_program_present(const sym_program_instance *instance, int32_t i);
 

@@ -125,7 +125,7 @@ static int fmu_set(fmu *f, size_t reference, double value) {
     if (reference == 0 || !(value - value == 0.0) || f->phase == FMU_TERMINATED) return FMU_NOT_ALLOWED;
     if (--reference < in) f->instance->inputs[reference] = value;
     else if ((reference -= in) < out) return FMU_NOT_ALLOWED;
-    else f->instance->par[reference - out] = value, f->parameters_valid = 0;
+    else sym_program_set(f->instance, (int32_t)(reference - out), value), f->parameters_valid = 0;
     f->outputs_valid = 0;
     return FMU_OK;
 }

@@ -263,7 +263,7 @@ static void simulate(int nlhs, mxArray **plhs, int count, const mxArray *const *
 }
 
 SYM_MEX_EXPORT void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
-    static const int most[10] = {6, 2, 2, 1, 5, 3, 3, 2, 2, 2};
+    static const int most[10] = {6, 2, 2, 1, 5, 3, 3, 2, 2, 2}, taken[10] = {1, 5, 5, 6, 6, 5, 5, 5, 5, 5};
     const mxArray *const *given = (const mxArray *const *)prhs;
     double flag;
     if (nrhs == 0) {
@@ -284,6 +284,7 @@ SYM_MEX_EXPORT void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArr
     flag = mxGetScalar(prhs[0]);
     if (!(flag >= 0.0 && flag <= 9.0) || flag != floor(flag)) refuse("flag", "no such flag", "it is one of 0 to 9");
     if (nlhs > most[(int)flag]) refuse("outputs", "too many outputs", "see the help for what each flag returns");
+    if (nrhs > taken[(int)flag]) refuse("inputs", "too many inputs", "see the help for what each flag takes");
     if (flag == 0.0) {
         describe(nlhs, plhs);
         return;

@@ -115,7 +115,7 @@ static void simulate(int nlhs, mxArray **plhs, int count, const mxArray *const *
 }
 
 SYM_MEX_EXPORT void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArray *prhs[]) {
-    static const int most[4] = {4, 1, 2, 2};
+    static const int most[4] = {4, 1, 2, 2}, taken[4] = {1, 3, 3, 4};
     const mxArray *const *given = (const mxArray *const *)prhs;
     const sym_program *p = SYM_MEX_PROGRAM();
     double flag, t, *u;
@@ -137,6 +137,7 @@ SYM_MEX_EXPORT void mexFunction(int nlhs, mxArray *plhs[], int nrhs, const mxArr
     flag = mxGetScalar(prhs[0]);
     if (!(flag >= 0.0 && flag <= 3.0) || flag != floor(flag)) refuse("flag", "no such flag", "it is one of 0 to 3");
     if (nlhs > most[(int)flag]) refuse("outputs", "too many outputs", "see the help for what each flag returns");
+    if (nrhs > taken[(int)flag]) refuse("inputs", "too many inputs", "Parameters count from flag 1 or 3 on, for a whole motion");
     if (flag == 0.0) {
         describe(nlhs, plhs);
         return;

@@ -121,6 +121,7 @@ def test_matrices_of_the_mex_function_match_python(program: Path, rng: np.random
         (([1.0], np.zeros(3)), ":size X = [q; v]"),
         (([1.0], np.zeros(7)), ":size X = [q; v]"),
         (([1.0], np.zeros(6), [], np.ones((1, 2))), ":size Parameters; it is a real, full array of 1 doubles"),
+        (([1.0], np.zeros(6), [], [], [0.0], [0.0]), ":inputs too many inputs"),
         (([11.0],), ":flag no such flag"),
         (([1.0],), ":missing X = [q; v]; it has 6 entries"),
         (([4.0], np.zeros(6), [99.0]), ":frame no such frame"),

@@ -71,6 +71,7 @@ def test_inputs_hold_and_parameters_count_for_a_motion(tmp_path: Path) -> None:
         (([3.0], [-0.1, 0.2], np.zeros(6)), ":times T"),
         (([3.0], [0.0, 0.1], np.zeros((3, 6))), ":size U, which has no row for each time"),
         (([3.0], [0.0, 0.1], np.full((2, 6), np.inf)), ":value U; its entries are finite"),
+        (([2.0], [0.1], np.zeros(6), np.ones(4)), ":inputs too many inputs; Parameters count from flag 1 or 3 on"),
         (([4.0],), ":flag no such flag"),
     ],
 )

@@ -188,6 +188,8 @@ def test_parameters_are_what_actions_have_set(tmp_path: Path) -> None:
     assert unit.get("m.shut") == 1.0
     unit.fmu.doStep(0.0, 0.5)
     assert unit.get("m.shut") == 0.0
+    unit.set("m.shut", 1.0)
+    assert unit.get("m.shut") == 1.0, "what is set later counts, too"
 
 
 def test_importers_get_the_reason_why_a_motion_has_ended(tmp_path: Path) -> None:

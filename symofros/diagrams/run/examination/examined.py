@@ -39,20 +39,17 @@ from symofros.simulation.stepping.windows import Window
 _POSITIONS = 3.0
 # Share of the tolerance that is allowed where external blocks do not answer to the change.
 _UNANSWERED = 0.08
-
 # Share of a step: a record that is nearer to a jump may be from before it or after it.
 _AT_JUMP = 1e-3
-
 # A power is a difference of energies over this share of the time between records, or of the time in which the largest
 # speed arises where that is shorter.
 _MOMENT = 1e-3
-
 # Records whose rates are asked for: fewer than are evaluated by vectors. Steps between records from which on these may
 # show a state at one phase alone.
 _SOME, _SPARSE = 32, 8.0
-
-# Method that shows whether steps of order 1 decide rightly at samples.
-_DECIDING = "rk4"
+# Methods that show whether steps of order 1, and of a higher one, decide rightly at samples; operations that decide.
+_DECIDING = "rk4", "dop853"
+_DECISIONS = frozenset({"sign", "step", "floor"})
 
 
 class Repeat(Protocol):
@@ -333,18 +330,21 @@ def whole_note(run: Examined) -> str:
 
 
 def _decisions_note(run: Examined) -> str:
-    """Note on a run of order 1 with samples that rk4 changes by the same steps: half the step may decide as wrongly."""
-    sampled = any(piece.block.period is not None for piece in run.energies.resolved.pieces.values())
-    if not sampled or not run.h or run.method_order > 1 or run.steps > MOST_STEPS:
+    """Note on a run with samples that a better method changes by the same steps: half of them may decide as wrongly."""
+    better = run.method_order > 1
+    pieces = (piece for piece in run.energies.resolved.pieces.values() if piece.is_discrete)
+    decides = any(not (better and _DECISIONS.isdisjoint(piece.g.op)) for piece in pieces)
+    method = _DECIDING[better]  # Errors of an order above 1 become large by jumps alone.
+    if not decides or not run.h or run.method.name == method or run.steps > MOST_STEPS:
         return ""
-    states, exact = run.coarse(run.window, 1), run.repeat(0, run.window.t_end, 0, _DECIDING)
+    states, exact = run.coarse(run.window, 1), run.repeat(0, run.window.t_end, 0, method)
     share, name = run.change(states, exact, "whole") if states is not None and exact is not None else (0.0, "")
     if not share > run.tolerance_of("whole"):
         return ""
     return (
         f"steps of {run.h:.4g} s do not determine the motion of '{name}': their error changes what is decided at a"
-        f" sample, and '{_DECIDING}' with the same steps changes it by {percent(share)};"
-        f" method='{_DECIDING}', or a smaller dt"
+        f" sample, and '{method}' with the same steps changes it by {percent(share)};"
+        f" method='{method}', or a smaller dt"
     )
 
 

@@ -78,6 +78,8 @@ class _Revisited:
             run.steps,
             self._repeat,
             self._accelerations,
+            parts=1 + len(run.crossings),
+            spacing=self._course.spacing,
         )
 
     def resolution(self) -> Resolution:

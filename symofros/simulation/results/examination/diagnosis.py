@@ -43,12 +43,13 @@ def diagnose(
         settings: Settings of the run.
         start: Initial q, v.
     """
+    recorded_states = tuple(states)
     if settings.every != 1 and not stepper.method.family.multistep:
         kept = stepper.diagnostic_states()
         states = kept if len(kept[0]) > min(1, len(states[0])) else states
     bendings = amplified_in_motion(stepper.bendings, stepper.amplified_bendings, stepper.model, states, stepper.par)
     status = recorded.status
-    run = ExaminedRun(stepper, settings, start, states, int(stepper.run.steps))
+    run = ExaminedRun(stepper, settings, start, states, int(stepper.run.steps), recorded=recorded_states)
     noted = () if status == Status.BEYOND_THEORY else bendings  # Else the reason says it.
     notes = (*_notes_on_the_way(run), *bending_notes(noted), *_pace_notes(run))
     fault = input_fault(stepper) if status < 0 else ""

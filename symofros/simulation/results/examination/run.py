@@ -64,6 +64,7 @@ class ExaminedRun(HeldRun):
         states: Records of the run.
         steps: Number of steps.
         counted: Ranks of the constraints where another stepper has met them; otherwise those that its own has.
+        recorded: All that it recorded, where `states` are ends of steps: only these hold what a function gave there.
     """
 
     stepper: Stepper
@@ -72,6 +73,7 @@ class ExaminedRun(HeldRun):
     states: States
     steps: int
     counted: Ranks | None = None
+    recorded: States = ()
 
     @property
     def ranks(self) -> Ranks:
@@ -95,6 +97,11 @@ class ExaminedRun(HeldRun):
         moves = bool(np.any(self.start[1][moving]) or np.any(self.states[2][:, moving]))
         return moving if moves else np.ones_like(moving)
 
+    @property
+    def is_of_first_order(self) -> bool:
+        """Whether fixed steps err by their first power, as much as forces that bend make better methods err."""
+        return not self.settings.adaptive and self.settings.method.order == 1
+
     @cached_property
     def amplifies(self) -> bool:
         """Whether contacts, or forces or inputs that bend or jump, may amplify errors: no mode at a state shows it."""
@@ -106,9 +113,9 @@ class ExaminedRun(HeldRun):
 
     @property
     def _inputs_jump(self) -> bool:
-        """Whether inputs jump within fixed steps: held samples, or those of a function in a short run."""
+        """Whether inputs jump within fixed steps: held samples, or those of a function from one state to the next."""
         inputs, u = self.stepper.inputs, self.states[3]
-        if inputs.callback is None or self.settings.adaptive or not self.short:
+        if inputs.callback is None or self.settings.adaptive:
             return self.settings.samples_within_steps(inputs.jumps)
         return bool(np.any(np.abs(np.diff(u, axis=0)) > _LEAP * np.ptp(u, axis=0)))
 
@@ -215,7 +222,7 @@ class ExaminedRun(HeldRun):
         if function is None or self.settings.realtime:
             return function is None
         if self.stepper.same_inputs_again is None:
-            self.stepper.same_inputs_again = gives_again(function, self.states)
+            self.stepper.same_inputs_again = gives_again(function, self.recorded or self.states)
         return self.stepper.same_inputs_again
 
     def repeated(self, start: Sequence[Any], t_end: float, dt: float, **changes: Any) -> tuple[int, list[Array]]:

@@ -55,7 +55,8 @@ def examine_run(run: ExaminedRun, *, ended_well: bool, failed: bool) -> tuple[Mo
         notes.append(step_size_note(mode, run.settings.method, run.settings.dt, energy))
     if not ended_well:
         return mode, tuple(notes)
-    whole = run.amplifies and run.stepper.actions is None  # Of a run with actions all parts are held as one.
+    # Of a run with actions all parts are held as one.
+    whole = (run.is_of_first_order or run.amplifies) and run.stepper.actions is None
     if mode is None and not (whole and not run.short):
         evident = resolution.evident and not run.settings.samples_within_steps(run.stepper.inputs.jumps)
         notes.append(halved_step_note(run, evident=evident))

@@ -103,7 +103,8 @@ def whole_run_note(run: SwitchedMotion) -> tuple[str, int]:
     worst, tolerance = run.changed(run.window, "whole"), run.tolerance_of("whole")
     if not worst.arrived:
         return other_end_note(run, worst, f" over {run.switched}", stepping, cure), 1
-    order = run.order() if run.h and _DOUBTED * tolerance < worst.size < _SEEN else math.nan
+    doubted = run.method_order > _LEAST and _DOUBTED * tolerance < worst.size < _SEEN
+    order = run.order() if run.h and doubted else math.nan
     error = run.error(worst.size, worst.refinements, order)
     if not error > tolerance:
         return "", 1

@@ -1,4 +1,4 @@
-"""A run with actions of events, or forces that bend or jump, held as a whole against finer steps: they amplify errors.
+"""A run by steps of order 1, with actions of events, or with forces that bend, held as a whole against finer steps.
 
 docs/theory/simulation.md, section 8, (18f) to (18j).
 """
@@ -44,8 +44,8 @@ class SwitchedRun(SwitchedMotion, ExaminedRun):
     @classmethod
     def of(cls, run: ExaminedRun) -> SwitchedRun:
         """A run in which no event acts."""
-        stopped = run.stepper.run.terminal_event >= 0
-        return cls(run.stepper, run.settings, run.start, run.states, run.steps, par=run.stepper.par, stopped=stopped)
+        parts = {"par": run.stepper.par, "stopped": run.stepper.run.terminal_event >= 0, "recorded": run.recorded}
+        return cls(run.stepper, run.settings, run.start, run.states, run.steps, **parts)
 
     @property
     def h(self) -> float:
@@ -76,7 +76,8 @@ class SwitchedRun(SwitchedMotion, ExaminedRun):
     def switched(self) -> str:
         """What switches in the run, or its actions of events, in words."""
         if self.stepper.actions is None:
-            return "its contacts" if self.model.record.has_compliant_contacts else "forces that bend or jump"
+            bends = "forces that bend or jump" if self.amplifies else "all of the run"
+            return "its contacts" if self.model.record.has_compliant_contacts else bends
         words = {1: "what its events do", 2: "an action of an event"}
         return words.get(self.parts, f"{self.parts - 1} actions of events")
 

@@ -188,3 +188,32 @@ def test_an_input_function_is_examined_once_however_many_notes_need_it(options: 
     asked = run.t[:: -max(1, len(run.t) // 8)]
     count = sum(calls[i : i + 3] == [*asked[:3]] for i in range(len(calls)))
     assert count == 1, run.outcome
+
+
+@cache
+def pushed() -> sf.Model:
+    """A pendulum with a damper and a motor."""
+    joint = sf.Joint("x", "revolute", axis=(0, 1, 0), elements=(sf.Damper(0.2),), actuated=True)
+    body = sf.RigidBody("body", joint, sf.Inertia(1.0, (0.0, 0.0, -0.3), (0.05, 0.05, 0.01)))
+    return sf.compile(sf.System("pushed", (body,)))
+
+
+LAWS: dict[str, Any] = {
+    "formula": {"x": "2*sin(3*t)"},
+    "function of time": lambda t, q, v: [2.0 * np.sin(3.0 * t)],
+    "feedback": lambda t, q, v: [2.0 * np.sin(3.0 * t) - 0.05 * q[0]],
+    "relay": lambda t, q, v: [3.0 if np.sin(2.0 * t) > q[0] else -3.0],
+}
+
+
+@pytest.mark.parametrize("law", LAWS)
+@pytest.mark.parametrize(("method", "dt"), [("semi_implicit_euler", 0.01), ("rk4", 0.01), ("rk4", 0.004)])
+def test_long_runs_are_held_to_three_per_cent(law: str, method: str, dt: float) -> None:
+    """By steps of order 1 whatever acts, by others where inputs jump: of functions of the caller, too."""
+    one, other = (
+        sf.simulate(pushed(), [0.5], [0.0], 5.0, u=LAWS[law], method=name, dt=h, output=0.05)
+        for name, h in ((method, dt), ("rk4", 2e-4 if law == "relay" else 2e-3))
+    )
+    error = np.abs(one.q - other.q).max() / np.abs(other.q - 0.5).max()
+    assert bool(one.outcome.notes) == (law == "relay" or method != "rk4"), (error, one.outcome)
+    assert (error > 0.025) == bool(one.outcome.notes), (error, one.outcome)
