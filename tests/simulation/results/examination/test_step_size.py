@@ -43,13 +43,17 @@ def oscillation(method: str, z: float, damping: float, steps: int, **options) ->
 @pytest.mark.parametrize("damping", [0.0, 0.05, 1.5])
 @pytest.mark.parametrize("method", JUDGED)
 def test_only_large_errors_are_noted(method: str, damping: float) -> None:
-    """The tolerance of a tenth is met within a factor of three: shares and modes are those of a few states."""
+    """The tolerance of a tenth is met within a factor of three: shares and modes are those of a few states.
+
+    Runs of order 1 are held as a whole, too, to 0.03.
+    """
+    silent = (0.1 if METHODS[method].order == 1 else 0.5) * TOLERANCE
     for z in STIFFNESS:
         for steps in (20, 300):
             run, error = oscillation(method, z, damping, steps)
             if error > 3.0 * TOLERANCE:
                 assert step_notes(run), (z, steps, error)
-            elif error < 0.5 * TOLERANCE:
+            elif error < silent:
                 assert not step_notes(run), (z, steps, error)
 
 
