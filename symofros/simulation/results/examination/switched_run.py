@@ -44,8 +44,10 @@ class SwitchedRun(SwitchedMotion, ExaminedRun):
     @classmethod
     def of(cls, run: ExaminedRun) -> SwitchedRun:
         """A run in which no event acts."""
-        parts = {"par": run.stepper.par, "stopped": run.stepper.run.terminal_event >= 0, "recorded": run.recorded}
-        return cls(run.stepper, run.settings, run.start, run.states, run.steps, **parts)
+        stopped, states = run.stepper.run.terminal_event >= 0, {"states": run.states, "recorded": run.recorded}
+        return cls(
+            run.stepper, run.settings, run.start, steps=run.steps, par=run.stepper.par, stopped=stopped, **states
+        )
 
     @property
     def h(self) -> float:
