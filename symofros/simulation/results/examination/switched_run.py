@@ -44,10 +44,9 @@ class SwitchedRun(SwitchedMotion, ExaminedRun):
     @classmethod
     def of(cls, run: ExaminedRun) -> SwitchedRun:
         """A run in which no event acts."""
-        stopped, states = run.stepper.run.terminal_event >= 0, {"states": run.states, "recorded": run.recorded}
-        return cls(
-            run.stepper, run.settings, run.start, steps=run.steps, par=run.stepper.par, stopped=stopped, **states
-        )
+        of, stopped = run.stepper, run.stepper.run.terminal_event >= 0
+        held = (run.settings, run.start, run.states, run.steps, run.counted, run.recorded)
+        return cls(of, *held, par=of.par, stopped=stopped)
 
     @property
     def h(self) -> float:
