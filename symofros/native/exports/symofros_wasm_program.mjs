@@ -74,7 +74,6 @@ export class Instance {
     if (numbers.length !== place.width || !numbers.every(Number.isFinite))
       throw new RangeError(`'${name}' takes ${place.width} finite numbers; it was given ${numbers.join(", ") || "none"}`);
     view.set(numbers);
-    if (place.what === PARAMETERS) numbers.forEach((x, i) => this.program.wasm.js_set(this.at, place.at + i, x));
   }
 
   /** Begin at t = 0 with the present parameters and inputs. */
