@@ -39,7 +39,13 @@ from symofros.generator.record import GENERATOR as GENERATOR
 from symofros.generator.record import model_record
 from symofros.generator.units import UnitCompiler
 from symofros.mechanics.dynamics.functions import Request
-from symofros.mechanics.topology.beams import omitted_rotary_inertia, omitted_shear, polar_mismatch
+from symofros.mechanics.topology.beams import (
+    massless_shear,
+    omitted_rotary_inertia,
+    omitted_shear,
+    omitted_warping,
+    polar_mismatch,
+)
 from symofros.mechanics.topology.events import tree_with_events
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.remarks import rotation_remarks
@@ -314,6 +320,21 @@ def inconsistencies(system: System) -> Iterator[str]:
                 f"beam '{body.name}': its sections do not shear in bend_{plane}: of the depth that its inertia shows,"
                 f" that would lower the frequency of mode {mode} there by about {share:.1%}, and add {more:.1%} to the"
                 f" deflection under a load at the tip. State theory: strain, shear_{plane}: 1 or more, and GA_{plane}."
+            )
+        warping = omitted_warping(body, numbers)
+        if warping is not None:
+            yield (
+                f"beam '{body.name}': it bends {warping[0]:.0f} times as stiffly as it twists, as sections of open thin"
+                " walls do, and warping has no part in its equations: if they warp (an I or a channel, not an L, a T or"
+                f" a cross), a root that holds warping lowers the twist of the tip by about {warping[1]:.1%}, and"
+                " raises loads that buckle it sideways. State GJ as torque times length over twist, as it is held."
+            )
+        for plane in massless_shear(body):
+            across = "z" if plane == "y" else "y"
+            yield (
+                f"beam '{body.name}': functions of bend_{plane} and shear_{plane} together move no mass, as a shear can"
+                " undo the slope of bending: the mass matrix is singular, and there are equilibria, but no motion and"
+                f" no modes. Set rotary_inertia: true, with rhoI_{across}, or shear_{plane}: 1."
             )
         if not body.foreshortening and body.retain == "first_order" and body.modes:
             yield (

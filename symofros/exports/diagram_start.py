@@ -16,7 +16,7 @@ from symofros.diagrams.run.simulate import run_compiled
 from symofros.diagrams.run.starts import Start
 from symofros.diagrams.run.values import diagram_options, part_settings
 from symofros.exports.diagram_interface import Interface
-from symofros.exports.limits import joints_of, limits_note
+from symofros.exports.limits import beams_note, joints_of, limits_note
 from symofros.exports.material import Stepping
 from symofros.simulation.analysis.kinematics.starts import singular_start
 
@@ -92,6 +92,7 @@ def _mechanism_notes(resolved: Resolved, placed: Sequence[Placed]) -> Iterator[s
                 continue
             system, record = models.system(name), models.record(name)
             said = [*system.notes, *limits_note(joints_of(system))]
+            said += beams_note(models.compilation(name).beams(layout.parameters_of(block, name, np.array(layout.par))))
             if record.nc and not record.driven and not resolved.pieces[block].block.lock_inputs():
                 q = layout.q[block]
                 first = q.start - part.q.start

@@ -34,7 +34,7 @@ from symofros.exports.folder import check_folder
 from symofros.exports.functions import states_note
 from symofros.exports.interchange.mjcf import write_mjcf
 from symofros.exports.interchange.urdf import write_urdf
-from symofros.exports.limits import events_note, joints_of, limits_note
+from symofros.exports.limits import beams_note, events_note, joints_of, limits_note
 from symofros.exports.material import Material, Stepping
 from symofros.exports.wasm import wasm
 from symofros.exports.wasm.program import write_diagram_wasm
@@ -284,7 +284,7 @@ def _material(
     if target in _DIFFERENTIATED and record.driven and shown:
         compilation.request(("frame_derivatives",), shown)
     interpreted = compile_system(system, Options(backend="interpreter")).carried
-    first = _start(interpreted, start)
+    first, beams = _start(interpreted, start), interpreted.beams()
     kernels = InterpretedUnit(compilation.program).kernels
     order = tuple((request.name, request.frame) for request in compilation.requests)
     return Material(
@@ -300,13 +300,14 @@ def _material(
         tuple(first.v.tolist()),
         _reach(interpreted, first.q) if constrained else (1.0,) * len(record.q_names),
         stepping,
-        interpreted.beams(),
+        beams,
         shown,
         GENERATOR,
         target == "c",
         (
             *system.notes,
             *limits_note(joints_of(system)),
+            *beams_note(beams),
             *states_note(record),
             *first.notes,
             *singular_start(interpreted, first.q),

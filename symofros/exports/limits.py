@@ -1,10 +1,11 @@
-"""Limits of joints in exports: which are stated, and what is said where a target has no place for them."""
+"""Limits in exports: which joints and beams have, and what is said where a target has no place for them."""
 
 from __future__ import annotations
 
-from collections.abc import Callable, Collection, Iterable
+from collections.abc import Callable, Collection, Iterable, Sequence
 
 from symofros.description import Joint, Limits, System
+from symofros.runtime.beams import ElasticBeam, ExactElasticBeam
 
 # What limits bound, in the order of the description.
 MEASURES = ("travel", "speed", "effort")
@@ -46,6 +47,20 @@ def limits_note(joints: Iterable[Joint], kept: Callable[[Joint], Collection[str]
 def listed(names: list[str]) -> str:
     """Names of a note: the first ones, and how many more there are."""
     return ", ".join(names[:8]) + (f" and {len(names) - 8} more" if len(names) > 8 else "")
+
+
+def beams_note(beams: Sequence[ElasticBeam]) -> tuple[str, ...]:
+    """Notes on what programs do not judge of elastic beams: orders that leave stiffness out, sections of rods."""
+    orders = {beam.name: f"'{beam.name}' ({beam.omitted.leaves_out})" for beam in beams if beam.omitted is not None}
+    rods = [f"'{beam.name}'" for beam in beams if isinstance(beam, ExactElasticBeam)]
+    rule = "programs do not judge how much that is in a motion: `simulate` of the same one says it"
+    notes = [f"orders of beams leave out stiffness under loads: {listed([*orders.values()])}; {rule}"] if orders else []
+    if rods:
+        notes.append(
+            f"programs do not judge how far rods bend between their sections: {listed(rods)}; `simulate` of the same"
+            " motion says it"
+        )
+    return tuple(notes)
 
 
 def events_note(system: System) -> tuple[str, ...]:

@@ -19,11 +19,11 @@ from symofros.expr.expression import Expression, evaluate
 from symofros.expr.graph import Graph
 from symofros.mechanics.beams.fields import Form
 from symofros.mechanics.beams.integrals import at_station
-from symofros.mechanics.beams.second_order.deformation import deformation_of
+from symofros.mechanics.beams.strain.section_law import section_law
 from symofros.mechanics.beams.theories import theory_of
 from symofros.mechanics.topology.tree import SpanningTree
 from symofros.runtime.beam_orders import OmittedStiffness
-from symofros.runtime.beams import ElasticBeam, ExactElasticBeam, StationMoments
+from symofros.runtime.beams import ElasticBeam, ExactElasticBeam, StationLaw
 from symofros.runtime.calls.kernel import Array
 from symofros.runtime.model import Model
 
@@ -130,7 +130,7 @@ def _numbers(beam: Beam, q: int, v: int, values: dict[str, float], in_series: in
         "EI_z": evaluate(judged.EI_z, values),
         "EI_y": evaluate(judged.EI_y, values),
         "omitted": _omitted(beam, values, in_series),
-        "station_moments": None if beam.elastic.is_exact else cache(partial(_station_moments, beam, values)),
+        "station_law": cache(partial(_station_law, beam, values)),
     }
     angles = np.array(judged.angles)
     if judged.integration_error is None:
@@ -177,27 +177,46 @@ def _stiffness(beam: Beam, values: dict[str, float]) -> Array:
     return np.array([[g.number(edge) for edge in row] for row in energy.second_derivatives()], dtype=np.float64)
 
 
-def _station_moments(beam: Beam, values: dict[str, float]) -> StationMoments:
-    """Moments by the linear terms of the curvatures (6), and weights of the stations."""
-    length, xi = evaluate(beam.length, values), np.array(beam.stations)
-    curvatures = np.zeros((len(xi), 3, beam.modes))
-    for k, field in enumerate(deformation_of(beam).curvatures):
-        for mono, function in field.terms.items():
+def _station_law(beam: Beam, values: dict[str, float]) -> StationLaw:
+    """The elastic law of the strains with functions (33), in axes of the section that it does not couple."""
+    length, xi, fields = evaluate(beam.length, values), np.array(beam.stations), theory_of(beam).strains
+    order = {axis: k for k, axis in enumerate(fields)}
+
+    def at(value: Value, x: float) -> float:
+        return evaluate(at_station(value, beam.length, x) if isinstance(value, Expression) else value, values)
+
+    strains = np.zeros((len(xi), len(fields), beam.modes))
+    stiffness, forces = np.zeros((len(xi), len(fields), len(fields))), np.zeros((len(xi), len(fields), _FORCES))
+    law = section_law(beam, fields)
+    for axis, k in order.items():
+        for mono, function in fields[axis].terms.items():
             if len(mono) == 1:
                 shape = np.array([float(function(Fraction(x))) for x in beam.stations])
-                curvatures[:, k, mono[0]] = length ** field.exponent(mono) * shape
+                strains[:, k, mono[0]] = length ** fields[axis].exponent(mono) * shape
+        forces[:, k, _force_of(axis)] = 1.0
+    for (a, b), value in law.stiffness.items():  # Of two strains once for both orders.
+        shared = np.array([at(value, x) for x in beam.stations]) * (1.0 if a == b else 0.5)
+        stiffness[:, order[a], order[b]] = stiffness[:, order[b], order[a]] = shared
+    for (follower, axis), value in law.following.items():
+        forces[:, order[axis], _force_of(follower)] = [at(value, x) for x in beam.stations]
+    parts = length * np.diff([0.0, *(0.5 * (xi[1:] + xi[:-1])), 1.0])
+    sizes, axes = np.linalg.eigh(stiffness)
+    roots, shares = np.sqrt(np.maximum(sizes, 0.0))[..., np.newaxis], np.sqrt(parts)[:, np.newaxis, np.newaxis]
+    across = shares * axes.swapaxes(1, 2)
+    return StationLaw(
+        np.divide(across @ forces, roots, out=np.zeros_like(forces), where=roots > 0.0),
+        roots * (across @ strains),
+        evaluate(beam.damping, values),
+    )
 
-    def at(EI: Value, x: float) -> float:
-        return evaluate(at_station(EI, beam.length, x) if isinstance(EI, Expression) else EI, values)
 
-    stiffness = np.array([[at(EI, x) for EI in (beam.GJ, beam.EI_y, beam.EI_z)] for x in beam.stations]).reshape(-1, 3)
-    order = np.argsort(xi, kind="stable")
-    parts = np.empty(len(xi))
-    parts[order] = length * np.diff([0.0, *(0.5 * (xi[order][1:] + xi[order][:-1])), 1.0])
-    bends = curvatures.any(axis=(0, 2)) & (stiffness > 0.0)
-    weights = np.divide(parts[:, np.newaxis], stiffness, out=np.zeros_like(stiffness), where=bends)
-    moments = (stiffness[..., np.newaxis] * curvatures).reshape(-1, beam.modes)
-    return StationMoments(moments, weights.ravel(), evaluate(beam.damping, values))
+# Number of section forces: N, Vy, Vz, T, My, Mz.
+_FORCES = 6
+
+
+def _force_of(axis: int) -> int:
+    """Place of the section force that works on a strain."""
+    return (axis + _FORCES // 2) % _FORCES
 
 
 def _coupling(beam: Beam, values: dict[str, float]) -> Array:

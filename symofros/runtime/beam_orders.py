@@ -57,6 +57,14 @@ class OmittedStiffness:
     in_series: int
 
     @property
+    def leaves_out(self) -> str:
+        """What is left out, in words."""
+        coupling = f"how loads couple bending and twist ({f'bend_{self.rigid}: 0' if self.rigid else self.order})"
+        axial = f"what axial forces do ({self.order})"
+        couples = bool(self.rigid) or self.coupling is not None
+        return " and ".join([axial] * self.axial + [coupling] * couples)
+
+    @property
     def of_forces(self) -> bool:
         """Whether it follows from section forces."""
         return self.axial or bool(self.rigid)

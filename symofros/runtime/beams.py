@@ -110,17 +110,20 @@ class BeamBending:
         return f"divide it into {count} beams joined end to end, or state theory: strain, which is geometrically exact"
 
 
-class StationMoments(NamedTuple):
-    """Torque and bending moments by small curvatures, at the stations of a beam's section forces, one after the other.
+class StationLaw(NamedTuple):
+    """The elastic law at the stations of a beam's section forces, for small changes of its k strains with functions.
+
+    Both are times the root of the length that is nearest to the station over the stiffness, so that squares of their
+    difference add up to the integral of (34).
 
     Attributes:
-        moments: T, My and Mz of each station by each elastic coordinate (3 s, n).
-        weights: Length nearest to the station over the stiffness (3 s); 0 of a direction without functions.
+        by_forces: Conjugates of the strains by N, Vy, Vz, T, My, Mz (s, k, 6).
+        by_strains: The same by each elastic coordinate (s, k, n).
         damping: Damping over stiffness [s].
     """
 
-    moments: Array
-    weights: Array
+    by_forces: Array
+    by_strains: Array
     damping: float
 
 
@@ -141,7 +144,7 @@ class ElasticBeam:
         EI_z: Stiffness against bending in the x-y plane at mid-length [N m^2].
         EI_y: Stiffness against bending in the x-z plane at mid-length [N m^2].
         omitted: What its equations leave out of the stiffness under loads; None of a beam that leaves out nothing.
-        station_moments: Forms the moments at its stations; None of a rod.
+        station_law: Forms the elastic law at its stations.
     """
 
     name: str
@@ -156,7 +159,7 @@ class ElasticBeam:
     EI_z: float
     EI_y: float
     omitted: OmittedStiffness | None
-    station_moments: Callable[[], StationMoments] | None
+    station_law: Callable[[], StationLaw]
 
     # Error up to which a run does not look for the step that bends a beam most: of what is stated, the last digit.
     NEGLIGIBLE = 1e-4
@@ -368,8 +371,17 @@ def largest_bending(bendings: Sequence[BeamBending]) -> BeamBending | None:
     return max(bendings, key=lambda bending: bending.error, default=None)
 
 
-def bending_notes(bendings: Sequence[BeamBending]) -> tuple[str, ...]:
-    """Sentences on the beams whose error, or what their order leaves out, is worth a note."""
-    bent = (f"{bending}; {bending.remedy}" for bending in bendings if bending.error > NOTED_ERROR)
-    left_out = (note for bending in bendings for note in left_out_notes(bending.beam, bending.left_out))
-    return (*bent, *left_out)
+def bending_notes(bendings: Sequence[BeamBending], *, vibrating: bool = False) -> tuple[str, ...]:
+    """Sentences on the beams whose error, or what their order leaves out, is worth a note.
+
+    A straight beam has no deflection that stiffness would change: of it only a critical load counts.
+
+    Args:
+        bendings: Bending of each beam.
+        vibrating: Whether straight beams vibrate, as in modes.
+    """
+    notes = [f"{bending}; {bending.remedy}" for bending in bendings if bending.error > NOTED_ERROR]
+    for bending in bendings:
+        bent = vibrating or max(bending.slope, bending.twist) > _STRAIGHT
+        notes += left_out_notes(bending.beam, [part for part in bending.left_out if bent or part.change <= -1.0])
+    return tuple(notes)

@@ -55,6 +55,7 @@ def write_c_package(material: Material, folder: Path) -> Exported:
         "heading": cell(material.record.name),
         "functions": functions_table(functions),
         "names": names_table(material.record),
+        "notes": "".join(["\n## Notes\n\n", *(f"- {note}\n" for note in material.notes)]) if material.notes else "",
         "example": f"{shown.symbol}({', '.join(['pre', *arguments, 'work'])})",
     }
     filled = {"main.c": "main.c.in", "CMakeLists.txt": "CMakeLists.txt.in", f"{name}.pc.in": "model.pc.in"}

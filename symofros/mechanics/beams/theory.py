@@ -22,7 +22,7 @@ from symofros.description.values import Value
 from symofros.expr.edges import Edge
 from symofros.expr.graph import Graph
 from symofros.expr.vector import Mat3, Vec3
-from symofros.mechanics.beams.fields import Form
+from symofros.mechanics.beams.fields import Field, Form
 from symofros.mechanics.beams.integrals import LengthIntegrator, Lower
 from symofros.mechanics.beams.piecewise import Piecewise
 from symofros.mechanics.spatial.across import AcrossJoint
@@ -278,6 +278,11 @@ class BeamTheory(ABC):
     def interpolated(self) -> Interpolated:
         """Properties interpolated between stations; none where all integrals are exact or checked."""
         return Interpolated()
+
+    @property
+    @abstractmethod
+    def strains(self) -> Mapping[int, Field]:
+        """Fields of the strains with functions, by their number (`strain.section_law`): their linear terms count."""
 
     @property
     @abstractmethod

@@ -9,7 +9,8 @@ import numpy as np
 
 from symofros.base.arrays import Array
 from symofros.description.beams.beam import STATION, Beam
-from symofros.description.beams.elastic import IN_MATRIX, MATRIX_ORDER, STRAINS
+from symofros.description.beams.elastic import AXIS, IN_MATRIX, MATRIX_ORDER, STRAINS
+from symofros.description.beams.sections.material import SPRING
 from symofros.description.values import ORIGIN, Term, Value, substituted, symbols
 from symofros.errors import Problem
 from symofros.expr.expression import Expression
@@ -32,6 +33,8 @@ INTERPOLATION_TOLERANCE = 1e-3
 MAX_FREQUENCY_DROP = 0.01
 # Relative difference between rhoJ and rhoI_y + rhoI_z up to which nothing is said.
 MAX_POLAR_MISMATCH = 0.01
+# EI/GJ from which walls are thin and open; relative drop of the twist by warping up to which nothing is said.
+OPEN_WALLS, MAX_TWIST_DROP = 10.0, 0.01
 # EI rhoA/(GA rhoI) where GA is not stated: E/G over the shear factor, 2.4 to 3.6 of full isotropic sections.
 ISOTROPIC_SHEAR = 3.0
 # Stations x/L at which section properties are looked at.
@@ -109,6 +112,31 @@ def omitted_shear(beam: Beam, numbers: Numbers) -> Iterator[tuple[str, int, floa
         share = _frequency_drop(mode, ratio)
         if share > MAX_FREQUENCY_DROP:
             yield plane, mode, share, 3.0 * ratio
+
+
+def omitted_warping(beam: Beam, numbers: Numbers) -> tuple[float, float] | None:
+    """Where GJ is that of open thin walls: EI/GJ, and how much less a tip twists whose root holds warping (27a)."""
+    stated = (beam.GJ, beam.EI_y, beam.EI_z, beam.rhoA, beam.rhoI_y, beam.rhoI_z)
+    if not beam.twist or beam.stiffness or 0.0 in stated:
+        return None
+    GJ, EI_y, EI_z, mass, inertia_y, inertia_z = (_at_middle(beam, value, numbers) for value in stated)
+    ratio = min(EI_y, EI_z) / GJ
+    length = numbers.value(beam.length) / np.sqrt(ratio * max(inertia_y, inertia_z) / mass)
+    share = float(np.tanh(length) / length)
+    return (ratio, share) if ratio > OPEN_WALLS and share > MAX_TWIST_DROP else None
+
+
+def massless_shear(beam: Beam) -> Iterator[str]:
+    """Planes in which a shear undoes a bending, so that both together move no mass (docs/theory/rods.md, section 4)."""
+    functions = theory_of(beam).functions
+    first = dict(zip(STRAINS, np.cumsum((0, *beam.counts[:-1])).tolist(), strict=True))
+    for plane, across in _ACROSS.items():
+        turned = beam.rotary_inertia and getattr(beam, f"rhoI_{across}") != 0.0 or beam.mass_center != AXIS
+        names = f"bend_{plane}", f"shear_{plane}"
+        bending, shear = (functions[first[name] : first[name] + getattr(beam, name)] for name in names)
+        slopes = *(f.antiderivative() for f in bending), *shear
+        if shear and not turned and not _condition(slopes) < MAX_CONDITION:
+            yield plane
 
 
 def polar_mismatch(beam: Beam, numbers: Numbers) -> tuple[float, float] | None:
@@ -201,14 +229,14 @@ class _Section:
         return Problem(f"{self.what}: {label} {numbers.value(stated):g}", f"'{stated}'", rule, remedy, self.where)
 
     def _wrong_sign(self, label: str, rule: str, numbers: Numbers) -> Problem:
-        values = self._along(getattr(self.beam, label), _STATIONS, numbers)
+        (values,) = section_values(self.beam, getattr(self.beam, label), _STATIONS, numbers.parameters)
         length = numbers.value(self.beam.length)
         at = int(np.argmin(np.where(np.isfinite(values), values, -np.inf)))
         return Problem(
             f"{self.what}: {label} = {values[at]:g} at x = {_STATIONS[at] * length:g}",
             f"'{getattr(self.beam, label)}'",
             rule,
-            "mend the value",
+            SPRING if label == "rhoA" and values[at] == 0.0 else "mend the value",
             self.where,
         )
 
@@ -218,9 +246,6 @@ class _Section:
         missing = [label for label in (first, second) if getattr(self.beam, label) == 0.0]
         remedy = f"state {' and '.join(missing)}" if missing else f"state a smaller {product}, or turn the section"
         return Problem(f"{self.what}: {product} too large", found, rule, remedy, self.where)
-
-    def _along(self, value: Value, xi: Array, numbers: Numbers) -> Array:
-        return np.asarray(section_values(self.beam, value, xi, numbers.parameters)[0])
 
     def stiffness_problems(self, numbers: Numbers) -> Iterator[Problem]:
         """A matrix of stiffness that is not positive definite at a station."""

@@ -8,6 +8,7 @@ import numpy as np
 
 from symofros.base.arguments import checked
 from symofros.base.arrays import Array, vector
+from symofros.errors import SymofrosError
 from symofros.runtime.beams import BEAM_LIMIT, BeamBending, bending_notes
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.beam_theory import bendings_in_motion, refuse_beyond
@@ -16,9 +17,16 @@ from symofros.simulation.analysis.imbalance import ROUNDED, changing_notes, imba
 from symofros.simulation.analysis.kinematics.consistency import consistent_jacobian
 from symofros.simulation.analysis.rest_linearisation import functions_of_modes, matrix_at_rest
 from symofros.simulation.analysis.rigid_motions import Complex, RigidMotions, rigid_motions
+from symofros.simulation.analysis.singular_mass import ADVICE, singular_mass
 from symofros.simulation.analysis.state_space import ON_CONSTRAINTS, about
 from symofros.simulation.analysis.states import given_configuration, given_inputs
-from symofros.simulation.analysis.unresolved_modes import Vibrations, judges, resolution_notes, too_high
+from symofros.simulation.analysis.unresolved_modes import (
+    Vibrations,
+    judged_beams,
+    resolution_notes,
+    too_high,
+    unjudged_notes,
+)
 
 # Share of its states of forces below which a mode's coordinates are rounding.
 _STILL = 1e-12
@@ -44,8 +52,8 @@ class Modes:
             theory errs by more than a per cent or whose functions are too few for a mode, forces and rates of states of
             forces that have a kink.
         too_high: How far each frequency is above the one of beams with enough shape functions, relative (k): an
-            estimate (docs/theory/beams.md, section 10); NaN where there is none, as of rods and of what does not
-            oscillate.
+            estimate (docs/theory/beams.md, section 10); NaN of what does not oscillate and where there are no beams, or
+            none that can be judged, which a note says.
         z_shapes: States of forces of each mode, as they change with `shapes` (nz, k); scaled to a largest entry of 1
             where they alone change.
     """
@@ -106,13 +114,14 @@ def modes(
     Raises:
         AssemblyError: The state violates the constraints, or a closure is closed the wrong way round.
         BeamTheoryError: A beam is bent beyond the limit.
+        SymofrosError: The mass matrix is singular.
     """
     model.record.refuse_rigid_contacts("modes")
     v = np.zeros(model.nv) if v is None else vector("v", model.by_name("v", v), model.nv)
     state = (given_configuration(model, q), v, vector("u", given_inputs(model, u), model.nu))
     consistent_jacobian(model.with_precision("double"), (*state[:2], None, state[2]), par, t, ON_CONSTRAINTS)
     states = np.zeros(model.nz) if z is None else vector("z", model.by_name("z", z), model.nz)
-    judged = judges(model, par)
+    judged = judged_beams(model, par)
     if judged:
         model.prepare("section_forces", *functions_of_modes(model, state[1]))
     A, basis, balanced = _linearised(model, *state, states, par, t)
@@ -122,6 +131,10 @@ def modes(
     q, v = (np.asarray(x) for x in model.carry(*state[:2], states))
     bendings = bendings_in_motion(moving, q, v, state[2], par, t, slopes)
     refuse_beyond(model, bendings, beam_limit, "the state of the modes")
+    massless = singular_mass(model.with_precision("double"), state[0], par, state[2])
+    if massless:
+        rule = "accelerations follow from forces by the mass matrix"
+        raise SymofrosError(f"model '{model.record.name}': no modes about this state", massless, rule, ADVICE)
     M = model.mass_matrix(state[0], u=state[2], par=par) if model.has("mass_matrix") else np.eye(model.nv)
     inertia = np.where(np.diagonal(M) > 0.0, np.diagonal(M), 1.0)
     shaken = None
@@ -137,12 +150,16 @@ def modes(
     shapes, z_shapes = _shapes(changes[: model.nv, order], changes[2 * model.nv :, order])
     values = model.parameter_values if par is None else model.checked_parameters(par)
     smooth = model.record.smooth_friction_notes(state[1], np.asarray(values))
-    notes = bending_notes(bendings) + kink_notes(moving, q, v, state[2], par, t) + smooth
+    notes = (
+        bending_notes(bendings, vibrating=True)
+        + kink_notes(moving, q, v, state[2], par, t)
+        + smooth
+        + unjudged_notes(model, par, judged)
+    )
     errors = np.full(len(s), np.nan)
     if judged:
-        errors, by_beam = too_high(
-            model.with_precision("double"), (*state, states), par, t, Vibrations(s, changes[:, order], M, balanced)
-        )
+        vibrations = Vibrations(s, changes[:, order], M, balanced)
+        errors, by_beam = too_high(model.with_precision("double"), (*state, states), par, t, vibrations, judged)
         notes += resolution_notes(s, errors, by_beam)
     if not balanced:
 

@@ -2,14 +2,13 @@
 
 from __future__ import annotations
 
-from collections.abc import Mapping
+from collections.abc import Mapping, Sequence
 from typing import NamedTuple
 
 import numpy as np
 
 from symofros.base.arrays import Array
-from symofros.errors import SymofrosError
-from symofros.runtime.beams import StationMoments
+from symofros.runtime.beams import ElasticBeam, StationLaw
 from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.analysis.rigid_motions import Complex
 
@@ -17,8 +16,8 @@ from symofros.simulation.analysis.rigid_motions import Complex
 _NOTED = 0.05
 # Largest change of an angle, or of a displacement in lengths, by which section forces are differentiated.
 _STEP = 1e-4
-# Place of T, My and Mz among section forces.
-_MOMENTS = slice(3, 6)
+# Functions that the estimate takes.
+_FUNCTIONS = "section_forces", "mass_matrix", "forward_dynamics"
 
 
 class Vibrations(NamedTuple):
@@ -37,16 +36,35 @@ class Vibrations(NamedTuple):
     at_rest: bool
 
 
-def judges(model: Model, par: ArrayLike | None) -> bool:
-    """Whether there are beams of second order with stations, and the functions that it takes."""
-    needed = "section_forces", "mass_matrix"
+def judged_beams(model: Model, par: ArrayLike | None) -> Sequence[ElasticBeam]:
+    """Beams of which there is an estimate: those with stations, of models with the functions that it takes."""
     with_stations = {name for name, _ in model.names.sections}
-    beams = any(beam.station_moments is not None and beam.name in with_stations for beam in model.beams(par))
-    return beams and all(map(model.has, needed))
+    return [beam for beam in model.beams(par) if beam.name in with_stations and not _missing(model)]
+
+
+def _missing(model: Model) -> list[str]:
+    return [name for name in _FUNCTIONS if not model.has(name)]
+
+
+def unjudged_notes(model: Model, par: ArrayLike | None, judged: Sequence[ElasticBeam]) -> tuple[str, ...]:
+    """A note on the beams of which there is no estimate."""
+    known, missing = {beam.name for beam in judged}, _missing(model)
+    others = [f"'{beam.name}'" for beam in model.beams(par) if beam.name not in known]
+    if not others:
+        return ()
+    reason = f"the model was compiled without {' and '.join(missing)}" if missing else "stations are stated as none"
+    return (
+        f"how far too few shape functions of beam {' and '.join(others)} raise frequencies is not estimated: {reason}",
+    )
 
 
 def too_high(
-    model: Model, state: tuple[Array, Array, Array, Array], par: ArrayLike | None, t: float, modes: Vibrations
+    model: Model,
+    state: tuple[Array, Array, Array, Array],
+    par: ArrayLike | None,
+    t: float,
+    modes: Vibrations,
+    beams: Sequence[ElasticBeam],
 ) -> tuple[Array, Mapping[str, Array]]:
     """Estimated error of each frequency by too few functions (36), relative (k), and the part of each beam in it.
 
@@ -58,10 +76,10 @@ def too_high(
         par: Run-time parameters.
         t: Time [s].
         modes: Modes about the state.
+        beams: Those to be judged (`judged_beams`).
     """
     errors = np.full(len(modes.s), np.nan)
     chosen = np.flatnonzero(modes.s.imag > 0.0)
-    beams = [beam for beam in model.beams(par) if beam.station_moments is not None]
     s, changes, nv = modes.s[chosen], modes.changes[:, chosen], model.nv
     if not len(chosen):
         return errors, {}
@@ -69,19 +87,15 @@ def too_high(
     largest = np.abs(changes[:nv]).max(axis=0)
     step = _STEP * min(1.0, *(beam.length for beam in beams))
     changes = changes * (step / np.where(largest > 0.0, largest, 1.0))
-    try:
-        moments = _changes_of_moments(model, state, par, t, modes._replace(s=s, changes=changes))
-    except SymofrosError:  # Options.functions left out what this takes.
-        return errors, {}
+    forces = _changes_of_forces(model, state, par, t, modes._replace(s=s, changes=changes))
     work = np.abs(s) ** 2 * (changes[:nv].conj() * (modes.M @ changes[:nv])).real.sum(axis=0)
     of = [name for name, _ in model.names.sections]
     shares: dict[str, Array] = {}
     for beam in beams:
-        if beam.name in of and beam.station_moments is not None:
-            first = of.index(beam.name)
-            moment = moments[:, first : first + of.count(beam.name)]
-            mismatch = _mismatch(beam.station_moments(), moment, s, changes[beam.in_v])
-            shares[beam.name] = mismatch / np.where(work > 0.0, work, np.inf)
+        first = of.index(beam.name)
+        inside = forces[:, first : first + of.count(beam.name)]
+        mismatch = _mismatch(beam.station_law(), inside, s, changes[beam.in_v])
+        shares[beam.name] = mismatch / np.where(work > 0.0, work, np.inf)
     errors[chosen] = np.sqrt(1.0 + sum(shares.values())) - 1.0
     return errors, shares
 
@@ -103,10 +117,10 @@ def resolution_notes(s: Complex, errors: Array, shares: Mapping[str, Array]) -> 
     )
 
 
-def _changes_of_moments(
+def _changes_of_forces(
     model: Model, state: tuple[Array, Array, Array, Array], par: ArrayLike | None, t: float, modes: Vibrations
 ) -> Complex:
-    """Torques and bending moments of small modes at all stations (k, stations, 3), by equilibrium."""
+    """Section forces of small modes at all stations (k, stations, 6), by equilibrium."""
     (q, v, u, z), nv = state, model.nv
     rows = np.concatenate([modes.changes, modes.changes[nv : 2 * nv] * modes.s])
     both = np.concatenate([rows.real, rows.imag], axis=1).T
@@ -119,20 +133,20 @@ def _changes_of_moments(
         a, lam = model.forward_dynamics(qs, vs, us, multipliers=True, **given)
     else:
         a = moved[:, -nv:] + (0.0 if modes.at_rest else model.forward_dynamics(q, v, u, **given))
-    forces = model.section_forces(qs, vs, a, us, lam, **given)[..., _MOMENTS]
+    forces = model.section_forces(qs, vs, a, us, lam, **given)
     real, imaginary, back, back_imaginary = forces.reshape(4, -1, *forces.shape[1:])
     return np.asarray(0.5 * (real - back) + 0.5j * (imaginary - back_imaginary))
 
 
-def _mismatch(elastic: StationMoments, moments: Complex, s: Complex, coordinates: Complex) -> Array:
-    """Integral of |M - EI kappa|^2/EI of each mode (k), over torque and both moments (34).
+def _mismatch(law: StationLaw, forces: Complex, s: Complex, coordinates: Complex) -> Array:
+    """Integral of |M - EI kappa|^2/EI of each mode (k), over all strains with functions (34).
 
     Args:
-        elastic: The beam's moments by its curvatures.
-        moments: Moments by equilibrium (k, stations, 3).
+        law: The beam's elastic law at its stations.
+        forces: Section forces by equilibrium (k, stations, 6).
         s: Eigenvalues (k) [1/s].
         coordinates: Elastic coordinates (n, k).
     """
-    by_curvature = (elastic.moments @ coordinates) * (1.0 + elastic.damping * s)
-    left = moments.reshape(len(s), -1).T - by_curvature
-    return np.asarray(elastic.weights @ (left.real**2 + left.imag**2))
+    by_strains = (law.by_strains @ coordinates) * (1.0 + law.damping * s)
+    left = law.by_forces @ np.moveaxis(forces, 0, -1) - by_strains
+    return np.asarray((left.real**2 + left.imag**2).sum(axis=(0, 1)))

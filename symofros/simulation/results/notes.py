@@ -190,6 +190,11 @@ NOTES: Mapping[str, NoteKind] = {
         "the frequency of a mode is off by more than 5 %, as a beam's functions do not have its shape",
         "more functions, or segments; or ignore the mode",
     ),
+    "functions unjudged": NoteKind(
+        "how far too few shape functions of beam … raise frequencies is not estimated: …",
+        "modes of a model that was compiled without the functions of the estimate, or of a beam without stations",
+        "default functions and stations",
+    ),
     "no equilibrium": NoteKind(
         "the state is neither an equilibrium nor a steady motion: '…' accelerates by …",
         "modes are asked for at a state that moves on, to where the linearised equations are others",

@@ -59,3 +59,33 @@ def test_exported_diagrams_report_the_error_of_beams_at_rest(tmp_path: Path) -> 
     *errors, refusal = subprocess.run([program], capture_output=True, text=True, check=True).stdout.splitlines()
     assert [float(error) for error in errors] == pytest.approx([rest.bendings[0].error] * 2, rel=1e-6)
     assert refusal == "-9 -9"
+
+
+def test_an_export_says_what_programs_do_not_judge(tmp_path: Path) -> None:
+    """Orders that leave stiffness out, and rods; beams whose order leaves out nothing need no word."""
+    clamp = sf.Joint("clamp", "revolute")
+    beams = [
+        sf.Beam("low", clamp, 1.0, 1.0, EI_z=1.0, bend_y=1, retain="zeroth_order"),
+        sf.Beam("first", sf.Joint("f"), 1.0, 1.0, EI_z=1.0, GJ=1.0, rhoJ=1.0, bend_y=1, twist=1),
+        sf.Beam("rod", sf.Joint("r"), 1.0, 1.0, EI_z=1.0, bend_y=1, theory="strain"),
+        sf.Beam("all", sf.Joint("a"), 1.0, 1.0, EI_z=1.0, bend_y=1),
+    ]
+    notes = sf.export(sf.System("s", beams), "c", tmp_path / "c").notes
+    assert [note for note in notes if "beams leave out" in note] == [
+        "orders of beams leave out stiffness under loads: 'low' (what axial forces do (retain: zeroth_order)), 'first'"
+        " (how loads couple bending and twist (bend_z: 0)); programs do not judge how much that is in a motion:"
+        " `simulate` of the same one says it"
+    ]
+    (rods,) = (note for note in notes if "how far rods bend" in note)
+    assert rods.startswith("programs do not judge how far rods bend between their sections: 'rod'; `simulate` of the")
+    readme = (tmp_path / "c" / "README.md").read_text()
+    assert "## Notes" in readme and all(f"- {note}\n" in readme for note in notes)
+    diagram = sf.Diagram("d")
+    diagram.add_model("plant", sf.System("p", beams[:1]))
+    diagram.add(sf.blocks.ForwardDynamics(name="arm", model="plant"))
+    said = sf.export(diagram, "c", tmp_path / "d").notes
+    assert any(
+        note.startswith("model 'plant': orders of beams leave out stiffness under loads: 'low'") for note in said
+    )
+    quiet = sf.export(sf.System("s", beams[3:]), "c", tmp_path / "quiet")
+    assert not quiet.notes and "## Notes" not in (tmp_path / "quiet" / "README.md").read_text()

@@ -132,6 +132,68 @@ def test_a_polar_moment_that_is_no_sum_is_said(polar: Any, said: int) -> None:
     assert sum("the polar moment of a section is their sum" in str(one.message) for one in caught) == said
 
 
+def warnings_of(system: sf.System) -> list[str]:
+    with warnings.catch_warnings(record=True) as caught:
+        warnings.simplefilter("always", sf.InconsistentModelWarning)
+        sf.compile(system, sf.Options(backend="interpreter"))
+    return [str(one.message) for one in caught]
+
+
+@pytest.mark.parametrize(
+    ("changed", "singular"),
+    [
+        ({"shear_y": 2}, True),
+        ({"shear_y": 3, "family": "spline"}, True),
+        ({"shear_y": 1}, False),
+        ({"shear_y": 2, "rotary_inertia": True, "rhoI_z": 1e-3}, False),
+    ],
+)
+def test_bending_and_shear_that_move_no_mass_are_said(changed: dict[str, Any], singular: bool) -> None:
+    stated: dict[str, Any] = {"EI_z": 1.0, "GA_y": 100.0, "bend_y": 2, "theory": "strain", "family": "legendre"}
+    system = sf.System("s", [sf.Beam("b", CLAMPED, 1.0, 1.0, **(stated | changed))], gravity=(0, 0, 0))
+    said = [text for text in warnings_of(system) if "bend_y and shear_y together move no mass" in text]
+    model = sf.compile(system, sf.Options(backend="interpreter"))
+    M = model.mass_matrix(model.neutral())
+    scale = np.sqrt(np.diag(M))
+    assert len(said) == singular == (np.linalg.cond(M / np.outer(scale, scale)) > 1e12)
+    if singular:
+        with pytest.raises(sf.SymofrosError, match="about this state[^§]*together move no mass"):
+            sf.modes(model, model.neutral())
+    else:
+        assert sf.modes(model, model.neutral()).frequencies[0] == pytest.approx(3.5, rel=0.05)
+
+
+# Of IPE 200 (DIN 1025-5): E times I_z, I_y, and G times I_T; A, all in m.
+IPE_200 = {"EI_y": 210e9 * 1.42e-6, "EI_z": 210e9 * 1.943e-5, "GJ": 81e9 * 6.98e-8, "rhoA": 7850 * 2.848e-3}
+
+
+@pytest.mark.parametrize("length", [2.0, 5.0, 100.0])
+def test_warping_that_is_left_out_is_said(length: float) -> None:
+    """By the share (27a) of the warping constant of the table."""
+    inertia = {"rhoI_y": 7850 * 1.42e-6, "rhoI_z": 7850 * 1.943e-5, "rhoJ": 7850 * 2.085e-5}
+    steel = sf.Beam("b", CLAMPED, length, twist=2, **IPE_200, **inertia)
+    said = [text for text in warnings_of(sf.System("s", [steel])) if "warping has no part" in text]
+    k = np.sqrt(IPE_200["GJ"] / (210e9 * 1.299e-8))
+    share = np.tanh(k * length) / (k * length)
+    assert len(said) == (share > 0.01)
+    if said:
+        assert float(said[0].split("by about ")[1].split("%")[0]) / 100.0 == pytest.approx(share, rel=0.15)
+
+
+@pytest.mark.parametrize("shape", [(0.1, 0.1), (0.1, 0.01)])
+def test_full_sections_do_not_warp(shape: tuple[float, float]) -> None:
+    section = sf.sections.rectangle(sf.sections.Material(210e9, 81e9, 7850.0), *shape)
+    full = sf.Beam("b", CLAMPED, 2.0, twist=2, **section.beam_properties("second_order"))
+    assert not any("warping" in text for text in warnings_of(sf.System("s", [full])))
+
+
+def test_a_beam_without_mass_is_refused_with_what_serves() -> None:
+    with pytest.raises(sf.DescriptionError, match="a beam has mass all along[^§]*rigid bodies and joints with springs"):
+        sf.sections.Material(70e9, 26e9, 0.0)
+    with pytest.raises(sf.DescriptionError, match="rhoA = 0[^§]*rigid bodies and joints with springs"):
+        sf.compile(sf.System("s", [beam(rhoA=0.0)]), sf.Options(backend="interpreter"))
+
+
 def test_a_single_clamped_beam_is_a_mechanism() -> None:
     model = sf.compile(sf.System("s", [beam()]), sf.Options(functions=("mass_matrix",)))
     assert model.names.q == ("b.bend_y[0]", "b.bend_y[1]") and "tip" in model.names.frames

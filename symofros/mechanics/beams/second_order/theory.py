@@ -113,6 +113,12 @@ class SecondOrderTheory(BeamTheory):
         return small_coordinates(self.beam, length)
 
     @property
+    def strains(self) -> Mapping[int, Field]:
+        """Twist rate and curvatures."""
+        fields = enumerate(deformation_of(self.beam).curvatures)
+        return {k: field for k, field in fields if any(len(monomial) == 1 for monomial in field.terms)}
+
+    @property
     def judged(self) -> Judged:
         """Data by which a deformation is judged: slopes and twist of the sections, EI_z and EI_y at mid-length."""
         beam, shape = self.beam, deformation_of(self.beam)

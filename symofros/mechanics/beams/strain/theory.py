@@ -19,6 +19,7 @@ from symofros.expr.graph import Graph
 from symofros.expr.numerics.evaluate import Evaluation
 from symofros.expr.program import Program
 from symofros.expr.vector import Mat3
+from symofros.mechanics.beams.fields import Field
 from symofros.mechanics.beams.integrals import Lower
 from symofros.mechanics.beams.piecewise import Piecewise
 from symofros.mechanics.beams.strain.planar import strain_equations
@@ -194,6 +195,12 @@ class StrainTheory(BeamTheory):
         following = list(section_law(beam, with_functions).following.values())
         properties = [("mass_center", list(beam.mass_center)), (labels, following)]
         return Interpolated(properties, strains.sections.stations, strains.masses.stations, strains.interpolation)
+
+    @property
+    def strains(self) -> Mapping[int, Field]:
+        """Changes of the strains."""
+        strains = strains_of(self.beam)
+        return {axis: strains.strain(axis) for axis in sorted({axis for axis, _ in strains.axes})}
 
     @property
     def judged(self) -> Judged:
