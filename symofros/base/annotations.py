@@ -226,6 +226,8 @@ def _mapping_of(key: Kind | None, value: Kind | None) -> Kind:
 
 def is_number(value: object) -> bool:
     """Whether a value is one real number that float64 holds; infinity is, NaN is not."""
+    if type(value) is float:  # As nearly always: without the registry of numbers.
+        return value == value
     if isinstance(value, np.ndarray):
         return value.ndim == 0 and value.dtype.kind in "fiub" and not bool(np.isnan(value))
     if not isinstance(value, numbers.Real):

@@ -10,7 +10,7 @@ import inspect
 from abc import ABCMeta
 from collections.abc import Callable, Iterable, Mapping, Sequence, Set
 from dataclasses import fields
-from functools import wraps
+from functools import cache, wraps
 from typing import TYPE_CHECKING, Any, ParamSpec, TypeVar
 
 import numpy as np
@@ -38,7 +38,7 @@ def checked(function: Callable[_Parameters, _Result]) -> Callable[_Parameters, _
     @wraps(function)
     def call(*args: _Parameters.args, **kwargs: _Parameters.kwargs) -> _Result:
         kinds = kinds_of(function)
-        given = by_name.given(args, kwargs)
+        given = by_name.given(args, kwargs, kinds)
         if given is None or not all(
             kind is None or kind.allows(given[name]) for name, kind in kinds.items() if name in given
         ):
@@ -62,17 +62,18 @@ class _Names:
 
     def __init__(self, signature: inspect.Signature) -> None:
         parameters = signature.parameters.values()
-        self._plain = all(p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY) for p in parameters)
+        self._plain = all(p.kind in (p.POSITIONAL_OR_KEYWORD, p.KEYWORD_ONLY, _BY_NAME) for p in parameters)
+        self._collects = next((p.name for p in parameters if p.kind == _BY_NAME), "")
         self._positional = tuple(p.name for p in parameters if p.kind == p.POSITIONAL_OR_KEYWORD)
         self._names = frozenset(signature.parameters)
-        self._required = frozenset(p.name for p in parameters if p.default is p.empty)
+        self._required = frozenset(p.name for p in parameters if p.default is p.empty and p.kind != _BY_NAME)
 
-    def given(self, args: tuple[Any, ...], kwargs: dict[str, Any]) -> dict[str, Any] | None:
-        """The arguments by name; None where the call does not fit, or the signature takes any number of them."""
-        if not self._plain or len(args) > len(self._positional):
+    def given(self, args: tuple[Any, ...], kwargs: dict[str, Any], kinds: Mapping[str, Any]) -> dict[str, Any] | None:
+        """The arguments by name; None where the call does not fit, or collects some that are to be of a kind."""
+        if not self._plain or len(args) > len(self._positional) or kinds.get(self._collects) is not None:
             return None
         given = dict(zip(self._positional, args, strict=False))
-        if not given.keys().isdisjoint(kwargs) or not self._names.issuperset(kwargs):
+        if not given.keys().isdisjoint(kwargs) or not (self._collects or self._names.issuperset(kwargs)):
             return None
         given.update(kwargs)
         return given if self._required.issubset(given) else None
@@ -85,10 +86,16 @@ def check_fields(stated: Any) -> None:
         ArgumentError: For the first such field.
     """
     kinds = kinds_of(stated.__class__)
-    for item in fields(stated):
-        kind, value = kinds.get(item.name), getattr(stated, item.name)
+    for name in _fields_of(stated.__class__):
+        kind, value = kinds.get(name), getattr(stated, name)
         if kind is not None and not kind.allows(value):
-            raise refusal(f"{type(stated).__name__}: {item.name}", value, kind)
+            raise refusal(f"{type(stated).__name__}: {name}", value, kind)
+
+
+@cache
+def _fields_of(stated: type[Any]) -> tuple[str, ...]:
+    """Names of the fields of a dataclass."""
+    return tuple(item.name for item in fields(stated))
 
 
 class CheckedCalls(ABCMeta):
@@ -125,11 +132,11 @@ class CheckedCalls(ABCMeta):
 
 def _own_fields(made: Any) -> None:
     """Make the fields of a frozen dataclass its own."""
-    for item in fields(made):
-        value = getattr(made, item.name)
+    for name in _fields_of(made.__class__):
+        value = getattr(made, name)
         own = _own(value)
         if own is not value:
-            object.__setattr__(made, item.name, own)
+            object.__setattr__(made, name, own)
 
 
 def _own(value: Any) -> Any:

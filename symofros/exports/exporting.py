@@ -47,7 +47,7 @@ from symofros.runtime.calls import LaneOptions
 from symofros.runtime.model import Model
 from symofros.simulation.analysis.kinematics.starts import ClosedStart, closed_start, singular_start, stated_names
 from symofros.simulation.analysis.reach import reach_of
-from symofros.simulation.options import SimulationOptions
+from symofros.simulation.options import USUAL
 from symofros.simulation.stepping.methods import METHODS, method_meant
 
 Target = Literal["c", "cuda", "mex", "sfunction", "fmu2", "fmu3", "wasm", "urdf", "mjcf"]
@@ -75,7 +75,7 @@ REACTIONS = ("joint_wrenches", "prescribed_efforts", "section_forces")
 _OF_RUNS = ("method", "rtol", "atol", "beam_limit")
 # Importers of units ask for intervals, not for steps: where none is stated, errors are bounded.
 _BY_INTERVALS, _BOUNDED = ("fmu2", "fmu3"), {"method": "dopri5"}
-_STEPPING: dict[str, Any] = {"dt": 1e-3} | {name: getattr(SimulationOptions(), name) for name in _OF_RUNS}
+_STEPPING: dict[str, Any] = {"dt": 1e-3} | {name: getattr(USUAL, name) for name in _OF_RUNS}
 _TARGETS_WITH_CHOSEN_FUNCTIONS = ("c", "wasm")
 # Targets whose steps, or those of whose hosts, end at instants of formulas of time.
 _STEPPED = ("c", "mex", "wasm", "fmu2", "fmu3")

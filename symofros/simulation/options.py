@@ -104,7 +104,7 @@ class SimulationOptions(metaclass=CheckedCalls):
                 rule = f"options are the fields of SimulationOptions, beside the arguments {', '.join(arguments)}"
                 remedy = _meant(name, names, arguments)
                 raise UnknownNameError(f"simulation: no option '{name}'", name, rule, remedy)
-        return replace(self, **chosen)
+        return replace(self, **chosen) if chosen else self
 
     def refuse(self, names: Sequence[str], what: str, rule: str, remedy: str = "leave it out") -> None:
         """Refuse options that are stated and have no effect on this kind of run.
@@ -118,11 +118,13 @@ class SimulationOptions(metaclass=CheckedCalls):
         Raises:
             SymofrosError: One of them is not as by default.
         """
-        usual = SimulationOptions()
         for name in names:
             value = getattr(self, name)
-            if value is not None and (np.ndim(value) or value != getattr(usual, name)):
+            if value is not None and (np.ndim(value) or value != getattr(USUAL, name)):
                 raise SymofrosError(f"{what}, '{name}'", repr(value)[:60], rule, remedy)
+
+
+USUAL = SimulationOptions()
 
 
 def _meant(name: str, names: Sequence[str], arguments: Sequence[str]) -> str:

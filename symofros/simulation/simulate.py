@@ -19,7 +19,7 @@ from symofros.runtime.model import ArrayLike, Model
 from symofros.simulation.actions import refuse_actions
 from symofros.simulation.events import event_notes, events_of
 from symofros.simulation.inputs import Inputs, plan_inputs
-from symofros.simulation.options import SimulationOptions
+from symofros.simulation.options import USUAL, SimulationOptions
 from symofros.simulation.prescribed_motions import contradiction, recorded_notes, refuse_contradiction
 from symofros.simulation.progress import bar
 from symofros.simulation.results.acted import failure_of, found_of, notes_of
@@ -81,7 +81,7 @@ def simulate(
         AssemblyError: The first state does not meet the constraints.
         SymofrosError: The options contradict each other, or inputs that prescribe a motion.
     """
-    settings = Settings.of(model, (options or SimulationOptions()).changed(changes), t_end)
+    settings = Settings.of(model, (options or USUAL).changed(changes), t_end)
     stated, model = model, model.carried.with_precision("double")
     q0, v0 = stated.carry(q0, v0, z0)
     values = model.parameter_values
@@ -276,7 +276,7 @@ def prepare_run(model: Model, settings: Settings | None = None) -> None:
         model: Model.
         settings: Settings of the run; those by default if not given.
     """
-    settings = settings or Settings.of(model, SimulationOptions(), 1.0)
+    settings = settings or Settings.of(model, USUAL, 1.0)
     names = ["forward_dynamics", *settings.method.family.functions, "kinetic_energy"]
     names += ["project", "constraint"] if model.nc else []
     names += ["dynamics"] if settings.judged else []

@@ -21,7 +21,7 @@ from symofros.simulation.analysis.kinematics.facing import facings
 from symofros.simulation.batch_inputs import Shape, sort_inputs
 from symofros.simulation.events import events_of
 from symofros.simulation.inputs import Inputs
-from symofros.simulation.options import SimulationOptions
+from symofros.simulation.options import USUAL, SimulationOptions
 from symofros.simulation.prescribed_motions import (
     Contradiction,
     Jump,
@@ -86,7 +86,7 @@ def simulate_batch(
         UnknownNameError: The name of an option, an input or in a formula is unknown.
         SymofrosError: The options contradict each other, are those of single runs, or the method is implicit.
     """
-    chosen = (options or SimulationOptions()).changed(changes)
+    chosen = (options or USUAL).changed(changes)
     rule = "a batch records at `output`, and is not paced"
     chosen.refuse(("realtime", "every"), "simulate_batch: an option of single runs", rule)
     if chosen.output is None:

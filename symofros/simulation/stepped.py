@@ -9,7 +9,7 @@ from typing import Any, NoReturn
 
 from symofros.base.arrays import Array
 from symofros.errors import SymofrosError
-from symofros.simulation.options import SimulationOptions
+from symofros.simulation.options import USUAL, SimulationOptions
 
 # Times of steps are known to the step up to here.
 MOST_STEPS = 1 << 53
@@ -139,4 +139,4 @@ def options_by_hand(
         if name in _ELSEWHERE:
             rule, remedy = _ELSEWHERE[name]
             raise SymofrosError(f"stepper: no option '{name}'", name, rule, remedy)
-    return (options or SimulationOptions()).changed(changes, arguments)
+    return (options or USUAL).changed(changes, arguments)

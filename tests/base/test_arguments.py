@@ -9,6 +9,7 @@ import pytest
 
 import symofros as sf
 from symofros import blocks
+from symofros.base.arguments import checked
 
 # Class, its arguments, the one that is filled anew. The latter holds one number at least.
 CASES: dict[str, tuple[Any, dict[str, Any], str]] = {
@@ -58,3 +59,22 @@ def test_each_of_any_number_of_arguments_is_checked() -> None:
         diagram.add_inlet("goal", ["a.u", "b.u"])
     with pytest.raises(sf.ArgumentError, match=r"add: inputs is not a text\n  found:  Gain"):
         diagram.add(blocks.Gain(name="a"), u=blocks.Gain(name="c"))
+
+
+def test_calls_with_options_by_name_are_looked_at_without_inspect(monkeypatch: pytest.MonkeyPatch) -> None:
+    """`inspect.Signature.bind` took a tenth of a short run; other arguments, and collected ones, are checked."""
+
+    @checked
+    def run(model: int, *, t_end: float = 1.0, **changes: Any) -> dict[str, Any]:
+        return changes
+
+    @checked
+    def add(**inputs: str) -> dict[str, str]:
+        return inputs
+
+    with pytest.raises(sf.ArgumentError, match="add: inputs is not a text"):
+        add(u=3)
+    with pytest.raises(sf.ArgumentError, match="run: t_end is not a number"):
+        run(1, t_end="1", dt=0.1)
+    monkeypatch.setattr("symofros.base.arguments.bound", None)
+    assert run(1, t_end=2.0, dt=0.1, changes=3) == {"dt": 0.1, "changes": 3}

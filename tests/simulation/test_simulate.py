@@ -8,6 +8,7 @@ import subprocess
 import sys
 import warnings
 from pathlib import Path
+from typing import Any
 
 import numpy as np
 import pytest
@@ -238,3 +239,25 @@ def test_progress_is_passed_to_a_function(pendulum: sf.Model) -> None:
     reported: list[float] = []
     sf.simulate(pendulum, [0.5], t_end=2.0, dt=1e-4, progress=reported.append)
     assert reported == sorted(reported) and reported[-1] == pytest.approx(2.0)
+
+
+def test_a_short_run_takes_few_calls_around_its_steps() -> None:
+    """Python's part of a small run, its judgement included, counted in calls of functions: 3174 of them once."""
+    model = compiled("double_pendulum")
+
+    def run() -> None:
+        assert sf.simulate(model, [0.3, -0.4], method="dopri5").outcome.ok
+
+    run()  # What is made once.
+    calls = 0
+
+    def count(_frame: Any, event: str, _argument: Any) -> None:
+        nonlocal calls
+        calls += event in ("call", "c_call")
+
+    sys.setprofile(count)
+    try:
+        run()
+    finally:
+        sys.setprofile(None)
+    assert calls < 2400

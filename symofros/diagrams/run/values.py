@@ -14,7 +14,7 @@ from symofros.diagrams.program.compiled import Resolved
 from symofros.diagrams.program.layout import Place
 from symofros.errors import DescriptionError, ParameterError, Problem, SymofrosError, UnknownNameError, did_you_mean
 from symofros.runtime.model import Model
-from symofros.simulation.options import DIAGRAM_CALL, SimulationOptions
+from symofros.simulation.options import DIAGRAM_CALL, USUAL, SimulationOptions
 from symofros.simulation.settings import Settings, check_pace
 
 # Recorded by default at about so many times.
@@ -28,7 +28,7 @@ def diagram_options(options: SimulationOptions | None, changes: Mapping[str, Any
         UnknownNameError: A name is not that of an option.
         SymofrosError: An option is one of runs of single models, or no pace against the clock.
     """
-    chosen = (options or SimulationOptions()).changed(changes, DIAGRAM_CALL)
+    chosen = (options or USUAL).changed(changes, DIAGRAM_CALL)
     check_pace(chosen.realtime)
     rule = "a run of a diagram records at an interval, and ends at t_end"
     chosen.refuse(("every", "max_steps"), "diagram: an option of runs of a single model", rule)

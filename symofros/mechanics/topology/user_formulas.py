@@ -55,6 +55,8 @@ def stated_formulas(
         UnknownNameError: A formula uses a name that the mechanism lacks.
         DescriptionError: A text is no formula, or can be read in two ways.
     """
+    if not formulas:
+        return []
     names = tree.coordinates
     what = what or f"system '{tree.system.name}'"
     own = frozenset({*names.symbols, *names.keys, *names.constants})

@@ -64,10 +64,10 @@ def constants() -> Mapping[str, int]:
 
 
 # Keyed by the type itself, whose name takes NumPy as long as all that is done with it.
-_POINTERS = {
-    np.dtype(np.float64): "double *",
-    np.dtype(np.int32): "int32_t *",
-    np.dtype(np.int64): "int64_t *",
+_ARRAYS = {
+    np.dtype(np.float64): "double[]",
+    np.dtype(np.int32): "int32_t[]",
+    np.dtype(np.int64): "int64_t[]",
 }
 
 
@@ -113,8 +113,8 @@ class NativeMemory:
 
     def shared(self, values: npt.NDArray[Any]) -> Any:
         """The elements of a contiguous array themselves, as a C array of their type."""
-        self.keep(values)
-        return self.ffi.cast(_POINTERS[values.dtype], self.ffi.from_buffer(values))
+        self._kept.append(values)
+        return self.ffi.from_buffer(_ARRAYS[values.dtype], values)
 
     def table(self, struct: Any, prefix: str, rows: int, **widths: int) -> list[Array]:
         """Arrays (rows, width) behind the pointers `prefix + name` of a struct."""
@@ -140,6 +140,14 @@ class NativeMemory:
     def view(self, pointer: Any, size: int) -> Array:
         """The doubles behind a pointer (size), not copied; this memory lives as long as the view."""
         return np.asarray(_Lent(self, pointer, size)) if size else np.zeros(0)
+
+    def bytes_at(self, pointer: Any, size: int) -> Any:
+        """The doubles behind a pointer (size) as bytes, not copied, to be kept and put back; this memory must live."""
+        return self.ffi.buffer(pointer, 8 * size)
+
+    def copy(self, pointer: Any, size: int) -> Array:
+        """A copy of the doubles behind a pointer (size)."""
+        return np.frombuffer(bytearray(self.bytes_at(pointer, size)), dtype=np.float64) if size else np.zeros(0)
 
     def raw(self, pointer: Any, kind: str, count: int) -> npt.NDArray[np.uint8]:
         """View of the bytes of `count` structs of a type at a pointer, not copied."""

@@ -275,8 +275,8 @@ class Stepper(BoundRun):
             (system.lam, model.nc),
             (system.rank, 1),
         ]
-        views = [self.memory.view(pointer, size) for pointer, size in sizes]
-        kept, t, evaluations = [view.copy() for view in views], run.t, run.evaluations
+        views = [self.memory.bytes_at(pointer, size) for pointer, size in sizes]
+        kept, t, evaluations = [view[:] for view in views], run.t, run.evaluations
         try:
             yield
         finally:
@@ -347,12 +347,12 @@ class Stepper(BoundRun):
 
     def _pointer(self, array: Array) -> Any:
         """C's view of an array of doubles, which the caller keeps."""
-        return self.ffi.cast("double *", array.ctypes.data)
+        return self.ffi.from_buffer("double[]", array)
 
     @property
     def inputs_now(self) -> Array:
         """The inputs last evaluated (nu)."""
-        return self.memory.view(self.system.u, self.model.nu).copy()
+        return self.memory.copy(self.system.u, self.model.nu)
 
     @property
     def t(self) -> float:
@@ -362,12 +362,11 @@ class Stepper(BoundRun):
     @property
     def state(self) -> tuple[float, Array, Array]:
         """The present t, q, v."""
-        q, v = self.memory.view(self.run.q, self.model.nq), self.memory.view(self.run.v, self.model.nv)
-        return float(self.run.t), q.copy(), v.copy()
+        run, copy = self.run, self.memory.copy
+        return float(run.t), copy(run.q, self.model.nq), copy(run.v, self.model.nv)
 
     @property
     def evaluation_point(self) -> tuple[float, Array, Array]:
         """The t, q, v at which functions were evaluated last; of a step that failed, where it failed."""
-        system, model = self.system, self.model
-        q, v = self.memory.view(system.q, model.nq), self.memory.view(system.v, model.nv)
-        return float(system.t[0]), q.copy(), v.copy()
+        system, copy = self.system, self.memory.copy
+        return float(system.t[0]), copy(system.q, self.model.nq), copy(system.v, self.model.nv)

@@ -106,3 +106,19 @@ def test_numbers_of_any_kind_take_the_short_way_with_time_and_places(
         results = m.evaluate("dynamics", q=q, v=given["v"].tolist(), u=given["u"], t=t, out={"M": M})
         assert results[0] is M
         assert all(np.array_equal(x, y) for x, y in zip(results, expected, strict=True))
+
+
+def test_a_models_own_parameters_make_a_plain_call(
+    m: sf.Model, rng: np.random.Generator, monkeypatch: pytest.MonkeyPatch
+) -> None:
+    """As runs and their examination pass them: they were copied, checked and prepared anew at each call."""
+    given = state(m, rng)
+    by_default = outputs(m.dynamics(given["q"], given["v"], given["u"]))
+    monkeypatch.setattr(sf.Model, "_call_batch", None)
+    for one, other in zip(
+        by_default,
+        outputs(m.dynamics(given["q"], given["v"], given["u"], par=m.parameter_values)),
+        strict=True,
+    ):
+        assert np.array_equal(one, other)
+    assert np.array_equal(m.mass_matrix(given["q"]), m.mass_matrix(given["q"], par=m.parameter_values))

@@ -123,7 +123,7 @@ class ExaminedRun(HeldRun):
         """Mass matrices (n, nv, nv) at configurations (n, nq), states left out; units where there is no mass matrix."""
         nv = self.model.nv
         try:  # What every model is compiled with, but for Options.functions.
-            M: Array = self.model.dynamics(q, np.zeros(nv), u, par=self.stepper.par)[0]
+            M: Array = self.model.dynamics(q, np.zeros((len(q), nv)), u, par=self.stepper.par)[0]
         except SymofrosError:
             M = np.broadcast_to(np.eye(nv), (len(q), nv, nv))
         return self._of_motion(M)
@@ -160,7 +160,7 @@ class ExaminedRun(HeldRun):
         """
         t, q, _, u = self._some
         try:
-            M, h, Q = self.model.dynamics(q, np.zeros(self.model.nv), u, par=self.stepper.par, t=t)
+            M, h, Q = self.model.dynamics(q, np.zeros((len(q), self.model.nv)), u, par=self.stepper.par, t=t)
             alone = np.asarray(np.linalg.solve(M, np.stack([h, Q], axis=-1)), dtype=np.float64)
         except (SymofrosError, np.linalg.LinAlgError):  # Options.functions left them out; what moves no mass.
             return self.metrics(q, u), 0.0
@@ -203,7 +203,8 @@ class ExaminedRun(HeldRun):
         if not span > 0.0:
             return 0.0
         coordinates = self.model.difference(self.model.neutral(), q[-1])[np.newaxis]
-        moved = float(self.norms(q[-1:], u[-1:], coordinates)[0]) * max(1, len(t) - 1) / span
+        metric = self._metrics_of_some[:1] if states is self.states else self.metrics(q[-1:], u[-1:])
+        moved = float(norms_in(metric, coordinates)[0]) * max(1, len(t) - 1) / span
         return AT_REST * (moved + span * self._rest_of_some[1])
 
     @property
