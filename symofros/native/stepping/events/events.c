@@ -254,9 +254,12 @@ static int32_t sym_find_lost_event(sym_event_step *step, double x, int32_t *lost
     const sym_system *s = r->system;
     double *values = r->event_values + (SYM_EVENT_ROWS - 1) * s->n_events;
     int32_t i, at_zero, status = 0;
+    int64_t row;
     for (i = 0, *lost = -1; r->actions != NULL && i < r->actions->first_mode && *lost < 0; ++i) {
         double begin, end, rate;
         if (r->acted_at[i] != r->t || !r->actions->acts[i] || s->event_terminal[i] == -1) continue;
+        for (row = r->first_met; row < r->n_event_records && r->event_index[row] != i;) ++row;
+        if (row < r->n_event_records) continue; /* found, as near to zero as the rounding of t and of its formula allows */
         status = sym_event_values_within_step(step, x, values), end = values[i];
         if (status == 0) status = sym_event_values_within_step(step, 0.0, values), begin = values[i];
         if (status != 0) return status;
