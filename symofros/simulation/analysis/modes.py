@@ -161,24 +161,18 @@ def modes(
         vibrations = Vibrations(s, changes[:, order], M, balanced)
         errors, by_beam = too_high(model.with_precision("double"), (*state, states), par, t, vibrations, judged)
         notes += resolution_notes(s, errors, by_beam)
-    if not balanced:
 
-        def spectrum(q: Array, v: Array) -> Complex:
-            A, basis, _ = _linearised(model, q, v, state[2], states, par, t)
-            return _motions(A, basis, inertia)[0]
+    def spectrum(q: Array, v: Array) -> Complex:
+        A, basis, _ = _linearised(model, q, v, state[2], states, par, t)
+        return _motions(A, basis, inertia)[0]
 
-        def matrix(q: Array, u: Array, t: float) -> Array:
-            A, basis, _ = _linearised(model, q, state[1], u, states, par, t)
-            return np.asarray(basis @ A @ basis.T)
+    def matrix(q: Array, u: Array, t: float) -> Array:
+        A, basis, _ = _linearised(model, q, state[1], u, states, par, t)
+        return np.asarray(basis @ A @ basis.T)
 
-        double = model.with_precision("double")
-        notes = (
-            *(
-                imbalance_notes(double, (*state, states), par, t, spectrum)
-                or changing_notes(double, state, t, matrix, s, changes[:, order], inertia)
-            ),
-            *notes,
-        )
+    double = model.with_precision("double")
+    passing = () if balanced else imbalance_notes(double, (*state, states), par, t, spectrum)
+    notes = (*(passing or changing_notes(double, state, t, matrix, s, changes[:, order], inertia)), *notes)
     return Modes(s, size, damping, shapes, bendings, notes, z_shapes, errors)
 
 

@@ -10,6 +10,7 @@ import pytest
 
 import symofros as sf
 from reference_models import MODELS
+from symofros.simulation.analysis.rest_linearisation import MANY
 from tests.models import interpreted
 
 STRIP: dict[str, Any] = {"rhoA": 2.0, "EI_z": 3e3, "EI_y": 5e3, "GJ": 2e3, "rhoJ": 0.04, "damping": 1e-3}
@@ -62,6 +63,18 @@ def test_modes_at_rest_match_derivatives_in_motion() -> None:
     for s in found.eigenvalues:
         assert np.abs(expected - s).min() <= ALIKE * np.abs(s)
     assert len(found.eigenvalues) == len(expected)
+
+
+def test_modes_at_rest_say_that_stiffness_changes_in_time() -> None:
+    """Ten masses in a row on springs whose rate swings: as of fewer speeds, whose derivatives are those in motion."""
+    for count in (3, MANY + 1):
+        bodies = []
+        for i in range(count):
+            joint = sf.Joint(f"x{i}", "prismatic", f"b{i - 1}" if i else "world", effort=(f"-(3 + sin(t))*x{i}",))
+            bodies.append(sf.RigidBody(f"b{i}", joint, sf.Inertia(1.0)))
+        model = interpreted(sf.System("row", bodies, gravity=(0, 0, 0)))
+        (note,) = sf.modes(model, model.neutral()).notes
+        assert note.startswith("the linearised equations change along this motion")
 
 
 def test_equilibrium_and_modes_generate_no_terms_of_speeds() -> None:

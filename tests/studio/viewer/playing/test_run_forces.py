@@ -65,6 +65,18 @@ def test_a_loop_that_is_closed_more_than_needed_says_that_its_forces_are_not_uni
     assert "undetermined" in drawn.legend(FORCES)[1] and drawn.legend(frozenset()) == []
 
 
+def test_a_loop_that_is_flat_at_its_start_has_forces_that_are_unique() -> None:
+    """A parallelogram, one crank of it beside, whose two conditions are one where all links are along a line."""
+    flat = MODELS["parallelogram"]
+    mechanism = Mechanism(replace(flat, constraints=flat.constraints[:1]))
+    model = sf.compile(mechanism.system)
+    run = sf.simulate(model, sf.assemble(model, [0.6, -0.6, 0.6, 0.0], held=("q1",)).q, t_end=0.01, dt=1e-3)
+    q = run.q.copy()
+    q[0] = 0.0
+    assert model.constrained_dynamics(q[0], run.v[0], run.u[0])[2] == 1
+    assert len(RunForces(replace(run, q=q), mechanism.tree, mechanism.drawing()).legend(FORCES)) == 1
+
+
 def test_a_beating_of_rounding_is_no_moment_and_hidden_layers_have_no_arrows() -> None:
     mechanism, run, forces = loop()
     assert forces.scales["moments"] is None
