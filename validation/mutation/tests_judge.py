@@ -161,7 +161,7 @@ _MIRRORS = {
 # What watches the whole of the mechanics, of motions.
 _GENERAL = {
     "symofros/blocks": ("tests/blocks/test_units.py", "tests/blocks/test_models.py"),
-    "symofros/mechanics": ("tests/identities/test_dynamics.py", "tests/identities/test_frames.py"),
+    "symofros/mechanics": ("tests/identities/test_dynamics.py", "tests/validation/procedures/test_catalogue.py"),
     "symofros/expr": ("tests/identities/test_dynamics.py", "tests/generator/codegen/test_c_equals_interpreter.py"),
     "symofros/generator": ("tests/generator/codegen/test_c_equals_interpreter.py",),
     "symofros/simulation": ("tests/simulation/test_simulate.py", "tests/simulation/stepping/test_orders.py"),

@@ -112,7 +112,7 @@ def test_builders_of_newton_make_what_is_stated() -> None:
 
 
 def test_a_mass_that_is_read_where_none_is_stated_is_a_red_cell() -> None:
-    require("yourdfpy", "yourdfpy")
+    pytest.importorskip("yourdfpy")
     one = urdf.files()["urdf: mass without value"]
     for text, verdict in ((one.text, "right"), (one.text.replace("<mass/>", '<mass value="1"/>'), "wrong")):
         job = Job("yourdfpy", one.tree, ("link_bodies",), SEED, form="urdf", text=text)
