@@ -167,7 +167,8 @@ def modes(
         return _motions(A, basis, inertia)[0]
 
     def matrix(q: Array, u: Array, t: float) -> Array:
-        A, basis, _ = _linearised(model, q, state[1], u, states, par, t)
+        # What rests here may move there: its rate of stiffness is looked at by the same functions.
+        A, basis, _ = _linearised(model, q, state[1], u, states, par, t, judged=not balanced)
         return np.asarray(basis @ A @ basis.T)
 
     double = model.with_precision("double")
@@ -206,11 +207,11 @@ def _shapes(X: Complex, Z: Complex) -> tuple[Complex, Complex]:
 
 
 def _linearised(
-    model: Model, q: Array, v: Array, u: Array, z: Array, par: ArrayLike | None, t: float
+    model: Model, q: Array, v: Array, u: Array, z: Array, par: ArrayLike | None, t: float, *, judged: bool = True
 ) -> tuple[Array, Array, bool]:
     """A and the basis of `state_space`; at a rest of many elastic coordinates by shorter functions, and whether so."""
     if not np.any(v) and not model.nz:
-        A = matrix_at_rest(model.with_precision("double"), q, u, par, t)
+        A = matrix_at_rest(model.with_precision("double"), q, u, par, t, judged=judged)
         if A is not None:
             return A, np.eye(2 * model.nv), True
     linear_model = about(model.with_precision("double"), q, v, u, par=par, t=t, z=z if model.nz else None)

@@ -28,7 +28,9 @@ def functions_of_modes(model: Model, v: Array) -> tuple[str, ...]:
     return "forward_dynamics", "forward_dynamics_derivatives", "mass_matrix"
 
 
-def matrix_at_rest(model: Model, q: Array, u: Array, par: ArrayLike | None, t: float) -> Array | None:
+def matrix_at_rest(
+    model: Model, q: Array, u: Array, par: ArrayLike | None, t: float, *, judged: bool = True
+) -> Array | None:
     """A of x' = A x at v = 0, x = (along q, of v) (2 nv, 2 nv).
 
     Args:
@@ -37,6 +39,7 @@ def matrix_at_rest(model: Model, q: Array, u: Array, par: ArrayLike | None, t: f
         u: Inputs (nu).
         par: Run-time parameters.
         t: Time [s].
+        judged: Whether forces have to balance; where they need not, d(M a)/dq is left out.
 
     Returns:
         None where `Model.linearize` is to be asked: forces do not balance, there are constraints or few speeds, a
@@ -47,7 +50,7 @@ def matrix_at_rest(model: Model, q: Array, u: Array, par: ArrayLike | None, t: f
     h, Q = model.evaluate("rest_forces", q=q, u=u, par=par, t=t)
     K = model.evaluate("rest_stiffness", q=q, u=u, lam=np.zeros(0), par=par, t=t)[0]
     allowed = _BALANCED * max(np.abs(h).max(), np.abs(Q).max(), np.abs(np.diag(K)).min())
-    if not np.abs(h - Q).max() <= allowed:
+    if judged and not np.abs(h - Q).max() <= allowed:
         return None
     M = model.evaluate("mass_matrix", q=q, u=u, par=par, t=t)[0]
     D = model.evaluate("rest_damping", q=q, u=u, par=par, t=t)[0]
