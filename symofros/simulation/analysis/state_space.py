@@ -23,6 +23,7 @@ ON_CONSTRAINTS = Refusal(
     "the state",
     "a linear model is about a state with phi = 0 and G v = b",
     "q and v from sf.assemble or model.project",
+    1e-4,  # What runs with Baumgarte's stabilization meet: 1e-6 to 1e-5. Linear models are off by as much.
 )
 
 

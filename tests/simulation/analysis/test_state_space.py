@@ -124,3 +124,12 @@ def test_a_loop_and_a_shaft_of_any_sizes_have_the_same_freedoms(L: float) -> Non
     at = sf.assemble(m, [1.2, -0.9, 1.4, -2.4], held=("q1",))
     linear = sf.state_space(m, at.q)
     assert linear.A.shape == (3, 3)  # Angles of crank and shaft, one speed.
+
+
+def test_states_of_runs_with_baumgartes_stabilization_have_linear_models() -> None:
+    model = sf.compile(MODELS["four_bar"])
+    run = sf.simulate(model, [1.2, -1.2, 1.2], t_end=1.0, method="rk4", dt=0.01, stabilisation="baumgarte")
+    assert np.isfinite(sf.state_space(model, run.q[-1], run.v[-1]).A).all()
+    assert np.isfinite(sf.modes(model, run.q[-1], run.v[-1]).eigenvalues).all()
+    with pytest.raises(sf.AssemblyError, match="violates its constraints"):
+        sf.state_space(model, run.q[-1] + [0.0, 0.0, 1e-3], run.v[-1])

@@ -14,12 +14,14 @@ from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 
 
 class Refusal(NamedTuple):
-    """How a motion that does not meet the constraints is refused: what it is, the rule, and the remedy."""
+    """How a motion that does not meet the constraints is refused: what it is, the rule, the remedy, and from which
+    residual of phi = 0, and of G v = b and G a = gamma relative to their terms; interpolated trajectories meet 1e-6."""
 
     error: type[SymofrosError]
     what: str
     rule: str
     remedy: str
+    limit: float = 1e-6
 
 
 EFFORTS = Refusal(
@@ -28,8 +30,6 @@ EFFORTS = Refusal(
     "efforts are those of a motion with phi = 0, G v = b and G a = gamma",
     "q and v from sf.assemble or model.project; a from forward_dynamics, or with G a = gamma",
 )
-# Residual of phi = 0, and of G v = b and G a = gamma relative to their terms: what interpolated trajectories meet.
-CONSISTENT = 1e-6
 
 
 def consistent_jacobian(
@@ -75,7 +75,7 @@ def consistent_jacobian(
         terms = (size @ np.abs(a)[..., None])[..., 0] + np.abs(gamma) + size.sum(axis=-1) * square + rest
         residuals["G a - gamma = {:.3g}"] = ((G @ a[..., None])[..., 0] - gamma, terms)
     for text, (residual, against) in residuals.items():
-        excess = np.abs(residual) - CONSISTENT * against
+        excess = np.abs(residual) - refusal.limit * against
         if excess.max(initial=0.0) > 0.0:
             *index, row = (int(i) for i in np.unravel_index(int(np.argmax(excess)), excess.shape))
             raise refusal.error(
