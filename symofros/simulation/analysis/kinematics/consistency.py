@@ -16,7 +16,8 @@ from symofros.simulation.analysis.kinematics.facing import refuse_opposite
 class Refusal(NamedTuple):
     """How a motion that does not meet the constraints is refused: what it is, the rule, the remedy, and the limit.
 
-    The limit is that of phi, and of G v - b and G a - gamma relative to their terms; interpolated trajectories meet 1e-6.
+    The limit is that of phi, and of G v - b and G a - gamma relative to their terms; trajectories that are interpolated
+    meet 1e-6.
     """
 
     error: type[SymofrosError]
