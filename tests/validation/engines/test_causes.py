@@ -11,6 +11,7 @@ import numpy as np
 import pytest
 
 from validation.engines import parts
+from validation.engines.causes import shown
 from validation.engines.causes.cause import FOLDER, read, stated
 from validation.engines.causes.corrections import by_columns
 from validation.engines.causes.grouping import causes_of, stale, without_their_causes
@@ -214,3 +215,8 @@ def test_files_of_two_formats_have_no_reader_in_common() -> None:
     toy: dict[str, Any] = {"engines": [engine], "cells": {"toy": {"gravity": row}}}
     models = [group.models for group in causes_of(parts.cells(toy), ())]
     assert sorted(models) == [("mjcf: plain", "mjcf: turned"), ("sdf: plain", "free")]
+
+
+def test_a_line_names_drawn_trees_by_their_numbers() -> None:
+    drawn = ["chain 3: gravity aside, 0: shifted", "urdf: friction alone", "scene 11: 0: motor", "ball"]
+    assert shown.named(drawn) == "chain 3, urdf: friction alone, scene 11 and 1 more"

@@ -15,13 +15,15 @@ from .grouping import Group, by_function
 # Verdicts of cells that differ from the truth and are no fault, and where their words say by how much.
 _WITHDRAWN = ("precondition", "repairs")
 _OFF = re.compile(rf": (?:{'|'.join(RED)}) by ")
+# Names of trees that are drawn list all their features after a number, which says enough in a line.
+_DRAWN = re.compile(r"(\w+ \d+): .*")
 # Names that a line shows before it counts the others.
 _FEW = 3
 
 
 def named(names: Sequence[str], few: int = _FEW, code: bool = False) -> str:
     """The first names, and how many more there are."""
-    shown = [f"`{name}`" if code else name for name in names[:few]]
+    shown = [f"`{name}`" if code else _DRAWN.sub(r"\1", name) for name in names[:few]]
     return ", ".join(shown) + (f" and {len(names) - few} more" if len(names) > few else "")
 
 
