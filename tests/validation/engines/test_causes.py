@@ -26,7 +26,7 @@ from validation.reporting import html, markdown
 from validation.reporting.provenance import Provenance
 
 ROOT = Path(__file__).parents[3]
-HESSIANS = ("jacobian_dq_local", "jacobian_dq_aligned")
+HESSIANS = ("jacobian_dq_local", "jacobian_dq_local:getFrameKinematicHessian", "jacobian_dq_aligned")
 
 
 @pytest.fixture(scope="module")
@@ -86,10 +86,10 @@ def test_a_cause_behind_another_is_found_with_that_one_taken_out() -> None:
         for one in judged(OWN["pinocchio"], Job("pinocchio", tree_of(kind), HESSIANS, SEED), Truths(0))
     ]
     first, *behind = causes_of([one.cell for one in cells], corrected=without_their_causes(cells))
-    assert first.cause and (first.cause.name, len(first.cells), first.hidden) == ("tensors by columns", 6, ())
+    assert first.cause and (first.cause.name, len(first.cells), first.hidden) == ("tensors by columns", 9, ())
     assert {group.cause and group.cause.name: len(group.hidden) for group in behind} == {
-        "axes that move with q": 2,
-        "Hessian in the joint's own axes": 1,
+        "axes that move with q": 3,
+        "Hessian in the joint's own axes": 2,
     }
     assert not any(group.cells for group in behind)
 
@@ -147,6 +147,10 @@ def test_scenes_have_the_causes_of_their_features(features: tuple[str, ...], fun
 
 _SEVERAL = "mass matrix of mimic joints beyond joints of several speeds"
 _HINGE_LAST = "slide before hinge"
+_BESIDE, _NO_UNIT = "class beside childclass", "axes that are no unit vectors"
+_BY_DEFAULT = "positions of joints by default"
+_LONG_AXIS, _RATE = "axisangle of an axis of length 2", "centroidal_momentum_rate_dq"
+_LESS_WEIGHT, _DEPENDENT = "centroidal derivatives less the weight", "constrained dynamics of dependent equations"
 _OF_FREE, _OF_SERVOS = "springs, dampers and armature of free joints", "gear of servos at joints"
 
 
@@ -189,6 +193,15 @@ def test_causes_take_no_cell_without_their_features(engine: str, model: str, fun
         ("pybullet", "urdf: inertia in full", "bias", "wrong", None),
         ("pinocchio", "mjcf: moments balanced + main class before childclass", "sizes", "raises", "classes of MJCF"),
         ("pinocchio", "rotations, 2^-8 from none", "rotation_difference_dq2", "raises", None),
+        ("pinocchio", "mjcf: class of nothing below childclass: damping", "joint_dampings", "wrong", _BESIDE),
+        ("pinocchio", f"mjcf: class of a geom before childclass + {_LONG_AXIS}", "link_poses", "wrong", _NO_UNIT),
+        ("pinocchio", f"mjcf: {_LONG_AXIS} + site turned", "frame_poses", "wrong", _NO_UNIT),
+        ("pinocchio", "mjcf: anchors by default + site turned", "frame_poses", "wrong", _BY_DEFAULT),
+        ("pinocchio", "millimetres", f"{_RATE}:getCentroidalDynamicsDerivatives", "imprecise", _LESS_WEIGHT),
+        ("pinocchio", "millimetres", f"{_RATE}:getCentroidalDynamicsDerivatives", "wrong", None),
+        ("pinocchio", "millimetres", _RATE, "imprecise", None),
+        ("pinocchio", "four-bar in a plane", "constrained_acceleration:forwardDynamics", "wrong", _DEPENDENT),
+        ("pinocchio", "four-bar in a plane", "constrained_acceleration", "wrong", None),
         ("mink", "rotations, 2^-40 from none", "pose_difference", "imprecise", "logarithm of turns below 1e-10"),
         ("mink", "rotations, 2^-17 from none", "pose_composed:lplus", "wrong", "placements by small turns"),
         ("mink", "rotations, 2^-12 from half turns", "pose_composed:rplus", "wrong", None),
