@@ -151,6 +151,7 @@ _BESIDE, _NO_UNIT = "class beside childclass", "axes that are no unit vectors"
 _BY_DEFAULT = "positions of joints by default"
 _LONG_AXIS, _RATE = "axisangle of an axis of length 2", "centroidal_momentum_rate_dq"
 _LESS_WEIGHT, _DEPENDENT = "centroidal derivatives less the weight", "constrained dynamics of dependent equations"
+_SMALL_TURNS = "rotations by less than a thousandth"
 _OF_FREE, _OF_SERVOS = "springs, dampers and armature of free joints", "gear of servos at joints"
 
 
@@ -202,6 +203,9 @@ def test_causes_take_no_cell_without_their_features(engine: str, model: str, fun
         ("pinocchio", "millimetres", _RATE, "imprecise", None),
         ("pinocchio", "four-bar in a plane", "constrained_acceleration:forwardDynamics", "wrong", _DEPENDENT),
         ("pinocchio", "four-bar in a plane", "constrained_acceleration", "wrong", None),
+        ("dart", "chain 4: free base, 0: turned", "step_stiffness_implicit", "imprecise", _SMALL_TURNS),
+        ("dart", "chain 4: free base, 0: turned", "step_stiffness_implicit", "wrong", None),
+        ("dart", "chain 5: 0: turned, 0: at the origin", "step_stiffness_implicit", "imprecise", None),
         ("mink", "rotations, 2^-40 from none", "pose_difference", "imprecise", "logarithm of turns below 1e-10"),
         ("mink", "rotations, 2^-17 from none", "pose_composed:lplus", "wrong", "placements by small turns"),
         ("mink", "rotations, 2^-12 from half turns", "pose_composed:rplus", "wrong", None),

@@ -12,7 +12,8 @@ import pytest
 from tests.late import needs_extra
 from validation.engines.interface import Joint, Link, Tree, Unsupported
 from validation.engines.matrix import asked, cells
-from validation.engines.models import single, spacecraft
+from validation.engines.models import hostile, single, spacecraft, transformed
+from validation.engines.models.covering import chains
 from validation.engines.models.kinds import tree_of
 from validation.engines.plugins import OWN
 
@@ -62,6 +63,28 @@ def test_joints_of_several_coordinates_match_their_charts(engine: str, kind: str
     _installed(engine)
     functions = ("mass_matrix", "inverse_dynamics", "link_velocities", "link_poses")
     assert {cell.verdict for cell in cells(OWN[engine], tree_of(kind), functions)} == {"right"}
+
+
+@pytest.mark.parametrize("what", ("mass", "inertia", "frame"))
+def test_copies_of_drake_have_what_is_changed_in_a_context(what: str) -> None:
+    """A plant's copy, and its default context, have the plant's defaults: what is changed is of the context."""
+    _installed("drake")
+    functions = ("mass_matrix:Clone", "bias:Clone", "potential_energy:Clone", "link_poses:Clone")
+    found = cells(OWN["drake"], transformed.trees()[f"{what} changed"], (*functions, "link_poses:SetDefaultPositions"))
+    assert [cell.verdict for cell in found] == ["right"] * 5
+
+
+def test_steps_of_dart_continue_rotation_vectors_beyond_half_a_turn() -> None:
+    _installed("dart")
+    (tree,) = (one for name, one in chains.trees().items() if name.startswith("chain 43: free base, gravity aside"))
+    (cell,) = cells(OWN["dart"], tree, ("step_stiffness_implicit",))
+    assert cell.verdict == "right"
+
+
+def test_moments_about_the_origin_of_the_world_are_not_asked_of_bases_far_from_it() -> None:
+    _installed("idyntree")
+    found = cells(OWN["idyntree"], hostile.trees()["free base 10 km away"], ("mass_matrix", "mass_matrix:world"))
+    assert [cell.verdict for cell in found] == ["right", "not offered"]
 
 
 @pytest.mark.parametrize("engine", ("adam", "dynibo", "frax", "idyntree"))

@@ -58,6 +58,23 @@ _FORWARD = f"{_QV}s.setForces(tau)\n"
 _NOW = "s.setTimeStep(0.0)\n"
 _WORLD = f"w = dart.simulation.World()\nw.setGravity(s.getGravity()); w.addSkeleton(s); w.setTimeStep({STEP})\n"
 
+# Rotation vectors of balls and free joints, which DART keeps within half a turn, as the motion from `q` continues them.
+_CONTINUED = f"""def near(x, place):
+    for j in map(s.getJoint, range(s.getNumJoints())):
+        if j.getType() in ('BallJoint', 'FreeJoint'):
+            k = j.getIndexInSkeleton(0)
+            r = x[k:k + 3]
+            n = np.linalg.norm(r) or 1.0
+            r += 2 * np.pi * np.round((place[k:k + 3] @ r / n - n) / (2 * np.pi)) * r / n
+    return x
+x, reached, speeds = q, s.getPositions(), s.getVelocities()
+s.setPositions(q)
+for _ in range(64):
+    s.setVelocities(speeds)
+    s.integratePositions({STEP} / 64)
+    x = near(s.getPositions(), x)
+"""
+
 _GET_BODY_FORCE = _linear_first("b.getBodyForce()", f"{_QVA}s.computeInverseDynamics()\n")
 _COMPUTE_FORWARD_DYNAMICS = _linear_first("b.getBodyForce()", f"{_FORWARD}{_NOW}s.computeForwardDynamics()\n")
 WAYS = {
@@ -89,7 +106,7 @@ value = np.where(np.isfinite(x), x, 0.0)
 == step_stiffness_implicit | World.step
 import numpy as np
 {_WORLD}{_FORWARD}w.step()
-value = np.r_[s.getPositions(), s.getVelocities()]
+{_CONTINUED}value = np.r_[near(reached, x), speeds]
 == kinetic_energy | computeKineticEnergy | {_QV}value = s.computeKineticEnergy()
 == potential_energy | computePotentialEnergy | {_Q}value = s.computePotentialEnergy()
 == link_poses | getTransform

@@ -114,7 +114,15 @@ _COPIED = {
 
 
 # Each call has a context of its own: no speeds, no forces of others.
-_CLOSING = ("c = p.CreateDefaultContext()",)
+_CONTEXT = "p.CreateDefaultContext()"
+_CLOSING = (f"c = {_CONTEXT}",)
+# What is changed stands in a context alone; those that a plant makes anew have its defaults.
+_ANEW = (
+    "def anew(p, c):",
+    f"    d = {_CONTEXT}",
+    "    d.get_mutable_parameters().SetFrom(c.get_parameters())",
+    "    return d",
+)
 
 
 def _array(values: object) -> str:
@@ -184,8 +192,11 @@ def write(tree: Tree) -> Source | Unsupported:
         return turns.source(*turning.IMPORTS)
     if tree.changed:
         first = write(tree.before)
+        if isinstance(first, Unsupported):
+            return first
         closing = (*_CLOSING, "p.CalcMassMatrix(c)", *_changing(tree))
-        return first if isinstance(first, Unsupported) else replace(first, closing=closing)
+        defined, spelling = {**first.optional, "anew": _ANEW}, {**first.spelling, _CONTEXT: "anew(p, c)"}
+        return replace(first, closing=closing, optional=defined, spelling=spelling)
     lines = [*_IMPORTS, *_HELPERS["X"], *_HELPERS["inertia"]]
     lines += _gravity(tree)
     chosen: list[list[_Native]] = []

@@ -207,6 +207,8 @@ def read(tree: Tree, described: Described, frames: bool = False) -> Source:
         nq=count + 7 * floating,
         nv=count + 6 * floating,
         optional=optional,
+        # Far from the world's origin moments about it, as doubles, do not have the digits of those about the base.
+        lacks=("mass_matrix:world",) if any(tree.away) else (),
         spelling={general: own.replace("{gravity}", gravity) for general, own in spelling.items()},
     )
 
