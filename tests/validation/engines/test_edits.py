@@ -26,8 +26,8 @@ _SILENT = {
     " limited auto, sections turned round, sites, cameras and lights",
     "sdf": "a frame for parent, axis of length 2, children before parents, pose relative to its joint, shapes beside"
     " inertia",
-    "usd": "direction of gravity of length 2, kilograms left out, magnitude of gravity left out, one limit of two, up"
-    " along Y, up axis left out",
+    "usd": "direction of gravity of length 2, kilograms left out, magnitude of gravity left out, up along Y,"
+    " up axis left out",
 }
 
 

@@ -94,7 +94,10 @@ def _joints(text: str, metres: float, above: Vector) -> tuple[Joint, ...]:
     made = Joint(
         "revolute" if kind == "Revolute" else "prismatic",
         axis=vector(axis),
-        limits=tuple(unit * one for one in bounds) if all(map(math.isfinite, bounds)) else (),
+        # Not limited in a direction: infinite (UsdPhysics), and zero where it is asked for (`joint_limits_of_some`).
+        limits=tuple(unit * one if math.isfinite(one) else 0.0 for one in bounds)
+        if any(map(math.isfinite, bounds))
+        else (),
     )
     return place, made, after
 
