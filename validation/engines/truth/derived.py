@@ -69,7 +69,7 @@ def joint_wrenches(truth: Truth, s: Point) -> Exact:
     poses = truth.kinematics.poses(s.q)
     held = truth.wrenches(truth.motions(s.q, s.v, s.a), poses, list(truth.inertias))
     places = [link.name for link in truth.tree.links]
-    for name, point, force in truth.own.pulls(s.q, s.v):
+    for name, point, force in truth.own.pulls(s.q, s.v, s.a):
         if name:
             k = places.index(name)
             held[k] = held[k] - np.concatenate([force, cross(point - poses[k][1], force)])

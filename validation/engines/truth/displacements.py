@@ -16,16 +16,17 @@ ROWS = 11
 
 
 def integrated(truth: Truth, q: Exact, v: Exact, rows: int = ROWS) -> Exact:
-    """Where q' = N(q) v leads with constant v in unit time."""
+    """Where q' = N(q) v leads with constant v in unit time, in parts in which v leads by an order of one."""
     end = q + truth.kinematics.rates(q) @ v
     # Joints move by themselves, and derivatives move one at a time.
     for joint, slot in truth.kinematics.moving():
         chart = CHARTS[slot.chart]
         if not chart.is_flat:
             own, speeds = q[list(slot.q)], v[list(slot.v)]
+            parts = max(1, int(max(map(abs, speeds))))
             end[list(slot.q)] = truth.once(
                 ("integrated", rows, slot.q, *own, *speeds),
-                partial(_extrapolated, partial(_rate, chart, joint, speeds), own, rows),
+                partial(_extrapolated, partial(_rate, chart, joint, speeds / parts), own, rows, parts),
             )
     return end
 
@@ -35,8 +36,15 @@ def _rate(chart: Chart, joint: Joint, v: Exact, q: Exact) -> Exact:
     return chart.rates(joint, q) @ v
 
 
-def _extrapolated(rate: Callable[[Exact], Exact], start: Exact, rows: int) -> Exact:
-    """Where q' = rate(q) leads in unit time: Gragg's midpoint rule, extrapolated."""
+def _extrapolated(rate: Callable[[Exact], Exact], start: Exact, rows: int, parts: int) -> Exact:
+    """Where q' = rate(q) leads in as many units of time: Gragg's midpoint rule, extrapolated for each."""
+    for _ in range(parts):
+        start = _unit(rate, start, rows)
+    return start
+
+
+def _unit(rate: Callable[[Exact], Exact], start: Exact, rows: int) -> Exact:
+    """Where q' = rate(q) leads in unit time."""
     table: list[Exact] = []
     for row in range(rows):
         n = 2 * (row + 1)

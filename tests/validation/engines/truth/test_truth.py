@@ -12,7 +12,7 @@ import pytest
 import sympy
 
 from validation.engines.functions import FUNCTIONS
-from validation.engines.interface import STEP, Joint, Link, Slot, State, Tree
+from validation.engines.interface import STEP, End, Joint, Link, Slot, State, Tendon, Tree
 from validation.engines.models.kinds import tree_of
 from validation.engines.proving.pieces import Layout
 from validation.engines.proving.shrink import Case, size, smallest
@@ -49,7 +49,7 @@ def test_derivatives_are_in_proportion_to_the_direction_however_long_it_is() -> 
         assert abs(slope + cos_sin(at[0])[1]) < Decimal("1e-30")
 
 
-@pytest.mark.parametrize("speed", [1.0, 100.0])
+@pytest.mark.parametrize("speed", [1.0, 100.0, 1000.0])
 def test_a_step_along_the_rate_of_a_quaternion_turns_by_the_arc_tangent(speed: float) -> None:
     """q (+) h w of unit length: tan(angle / 2) = h |w| / 2, where the step along the manifold turns by h |w|."""
     tree = replace(tree_of("ball"), links=tree_of("ball").links[:1], gravity=(0.0, 0.0, 0.0))
@@ -115,6 +115,20 @@ def test_coordinates_stay_on_their_manifold_along_the_rates(name: str) -> None:
         for k in range(chart.nv):
             spin = rate(lambda x: chart.pose(joint, x)[0], exact(q), chart.rates(joint, exact(q))[:, k]) @ R.T
             assert np.max(np.abs(digits(spin + spin.T))) < 1e-30
+
+
+def test_the_armature_of_a_tendon_pulls_on_what_it_holds() -> None:
+    """T = A l'' of the way l from a point beside a slide to it, across the slide by its share 1/l."""
+    ends = (End("", p=(0.0, 1.0, 0.0)), End("a"))
+    slide = Link("a", -1, (Joint("prismatic", axis=(1.0, 0.0, 0.0)),))
+    tree = Tree("pulled", (slide,), gravity=(0.0, 0.0, 0.0), tendons=(Tendon("path", ends, armature=0.75),))
+    x, v, a = 0.75, 0.5, -2.0
+    state = State(*(np.array([value]) for value in (x, v, a, 0.0, 0.0, 0.0)))
+    with many_digits():
+        held = digits(FUNCTIONS["joint_wrenches"].truth(Truth(tree, Layout.ours(tree)), Point.of(state)))[0]
+    way = math.hypot(x, 1.0)
+    tension = 0.75 * ((v**2 + x * a) / way - (x * v) ** 2 / way**3)
+    np.testing.assert_allclose(held[:3], [a + tension * x / way, -tension / way, 0.0], rtol=1e-15, atol=1e-15)
 
 
 def test_forward_and_inverse_dynamics_undo_each_other_to_all_digits() -> None:
