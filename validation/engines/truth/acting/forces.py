@@ -121,24 +121,25 @@ class Forces:
         """What straight tendons do to links, or to the world "": the link, the point (3), the force there (3).
 
         Of points x_k of a path with l = sum |x_k+1 - x_k|, the virtual work -T dl leaves x_k with the force
-        T (u_k - u_k-1), where T is the tension, k (l - rest) + c l' + (armature) l'' less what actuators do, and u_k the
-        direction from x_k to x_k+1, zero beyond the ends.
+        T (u_k - u_k-1), where T is the tension, k (l - rest) + c l' + (armature) l'' less what actuators do, and u_k
+        the direction from x_k to x_k+1, zero beyond the ends.
 
         Raises:
             ValueError: A tendon wraps around a surface, which pushes on its link besides.
         """
         if any(tendon.wraps for tendon in self.tree.tendons):
             raise ValueError("what a tendon does to a surface that it wraps around is not worked out")
-        forces = []
+        forces: list[tuple[str, Exact, Exact]] = []
+        if not self.tree.tendons:
+            return forces
+        turning = self._kinematics.along(lambda at: np.array([J for _, J in self.lines(at)], dtype=object), q, v)
         driven = list(zip(self.tree.actuators, self.efforts(q, v), strict=True))
         for number, (tendon, (length, J)) in enumerate(zip(self.tree.tendons, self.lines(q), strict=True)):
             if tendon.kind != "path":  # A coupling acts along its joints.
                 continue
             stiffness, damping, rest = exact((tendon.stiffness, tendon.damping, tendon.rest))
             tension = stiffness * (length - rest) + damping * (J @ v)
-            if tendon.armature:
-                turning = self._kinematics.along(lambda at, one=tendon: self._kinematics.line(at, one)[1], q, v)
-                tension = tension + exact(tendon.armature)[()] * (J @ a + turning @ v)
+            tension = tension + exact(tendon.armature)[()] * (J @ a + turning[number] @ v)
             tension = tension - sum(exact(one.gear)[()] * force for one, force in driven if one.tendon == number)
             points = [self._kinematics.held(q, end).p for end in tendon.ends]
             steps = [after - before for before, after in pairwise(points)]
