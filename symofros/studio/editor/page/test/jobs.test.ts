@@ -27,8 +27,9 @@ function answer(id: string, before: () => void = () => undefined) {
   });
 }
 
-beforeEach(() => update({ jobs: {}, live: null }));
-afterEach(() => update({ jobs: {}, live: null }));
+// Runs are of the open document.
+beforeEach(() => update({ jobs: {}, live: null, document: { path: "loop.yaml" } as never }));
+afterEach(() => update({ jobs: {}, live: null, document: null }));
 
 test("samples that come before the answer that names the run are kept", async () => {
   answer("a", () => tell("a"));
