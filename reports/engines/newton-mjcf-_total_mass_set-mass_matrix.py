@@ -1,9 +1,11 @@
 # newton 1.8.0, mjcf: total mass set: eval_mass_matrix is wrong (M).
 import numpy as np, warp as wp
-wp.config.quiet = True
+wp.config.quiet, wp.config.log_level = True, 30
+wp.config.enable_backward, wp.config.optimization_level = False, 0
 import newton
-TEXT = '<mujoco model="m"><compiler angle="radian" settotalmass="6"/><worldbody><body name="a" pos="0.1 0.2 0.3" ><joint axis="0 0 1"/><inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4"/><body name="b" pos="0 0 0.5" ><joint axis="0 1 0"/><inertial pos="0 0.1 0.2" mass="1" diaginertia="0.2 0.3 0.4"/></body></body></worldbody></mujoco>'
+TEXT = '<mujoco model="m"><compiler angle="radian" settotalmass="6" /><option /><default /><worldbody><body name="a" pos="0.1 0.2 0.3"><joint name="a" axis="0 0 1" /><inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4" /><body name="b" pos="0 0 0.5"><joint name="b" axis="0 1 0" /><inertial pos="0 0.1 0.2" mass="1" diaginertia="0.2 0.3 0.4" /></body></body></worldbody></mujoco>'
 b = newton.ModelBuilder()
+newton.solvers.SolverMuJoCo.register_custom_attributes(b)
 b.add_mjcf(TEXT)
 m = b.finalize(device="cpu")
 def rotation(x, y, z, w):
@@ -18,4 +20,4 @@ newton.eval_fk(m, s.joint_q, s.joint_qd, s)
 value = newton.eval_mass_matrix(m, s).numpy()[0]
 import numpy as np
 value, expected = np.reshape(value, (2, 2))[(0, 0)], 1.82
-assert abs(value - expected) <= 1.1e-03, f"{value = }, {expected = }"
+assert abs(value - expected) <= 1.2e-03, f"{value = }, {expected = }"

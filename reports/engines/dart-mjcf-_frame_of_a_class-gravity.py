@@ -1,0 +1,16 @@
+# dart 6.20.0, mjcf: frame of a class: getGravityForces is wrong (g: gravity forces).
+# shape (1,), not (2,).
+import numpy as np
+import dartpy as dart
+from tempfile import NamedTemporaryFile
+file = NamedTemporaryFile('w', suffix='.xml')
+print('<mujoco model="m"><compiler angle="radian" /><option /><default><default class="k"><joint damping="3" frictionloss="0.25" armature="0.5" /></default></default><worldbody><body name="a" pos="0.1 0.2 0.3"><joint name="a" axis="0 0 1" /><inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4" /><frame childclass="k"><body name="b" pos="0 0 0.5"><joint name="b" axis="0 1 0" /><inertial pos="0 0.1 0.2" mass="1" diaginertia="0.2 0.3 0.4" /></body></frame></body></worldbody></mujoco>', file=file, flush=True)
+world = dart.utils.MjcfParser.readWorld(dart.common.Uri('file://' + file.name))
+s = world and world.getSkeleton(0)
+if s is None: raise ValueError('no skeleton: see the log')
+links = [b for name in ['a', 'b'] if (b := s.getBodyNode(name))]
+q = np.array([0.0, 0.0])
+s.setPositions(q)
+value = s.getGravityForces()
+import numpy as np
+assert np.shape(value) == (2,), np.shape(value)

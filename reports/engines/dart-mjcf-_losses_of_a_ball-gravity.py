@@ -1,0 +1,16 @@
+# dart 6.20.0, mjcf: losses of a ball: getGravityForces is wrong (g: gravity forces).
+import numpy as np
+import dartpy as dart
+from tempfile import NamedTemporaryFile
+file = NamedTemporaryFile('w', suffix='.xml')
+print('<mujoco model="m"><compiler angle="radian" /><option /><default /><worldbody><body name="a" pos="0.1 0.2 0.3"><joint name="a" axis="0 0 1" /><inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4" /><body name="b" pos="0 0 0.5"><joint name="b" type="ball" damping="3" frictionloss="0.25" /><inertial pos="0 0.1 0.2" mass="1" diaginertia="0.2 0.3 0.4" /></body></body></worldbody></mujoco>', file=file, flush=True)
+world = dart.utils.MjcfParser.readWorld(dart.common.Uri('file://' + file.name))
+s = world and world.getSkeleton(0)
+if s is None: raise ValueError('no skeleton: see the log')
+links = [b for name in ['a', 'b'] if (b := s.getBodyNode(name))]
+q = np.array([0.0, 0.0, 0.0, 0.0])
+s.setPositions(q)
+value = s.getGravityForces()
+import numpy as np
+value, expected = np.reshape(value, (4,))[(1,)], 0.9810000000000001
+assert abs(value - expected) <= 9.9e-12, f"{value = }, {expected = }"

@@ -1,0 +1,15 @@
+# drake 1.51.1, mjcf: class within a class: axis: EvalBodyPoseInWorld is wrong (positions and rows of R).
+import numpy as np
+import pydrake.all as drake
+p = drake.MultibodyPlant(0.0)
+drake.Parser(p).AddModelsFromString('<mujoco model="m"><compiler angle="radian"/><default><default class="k"><joint axis="1 0 0"/><default class="p"/></default></default><worldbody><body name="a" pos="0.1 0.2 0.3" ><joint damping="0" stiffness="0" frictionloss="0" armature="0" type="hinge" axis="0 0 1"/><inertial pos="0.1 -0.2 0.3" mass="2" diaginertia="0.2 0.3 0.4"/><body name="b" pos="0 0 0.5" childclass="k"><joint class="p"/><inertial pos="0 0.1 0.2" mass="1" diaginertia="0.2 0.3 0.4"/></body></body></worldbody></mujoco>', 'xml')
+p.Finalize()
+links = [p.GetBodyByName(name) for name in ['a', 'b']]
+c = p.CreateDefaultContext()
+q = np.array([0.0, 1.0])
+p.SetPositions(c, q)
+poses = [p.EvalBodyPoseInWorld(c, b) for b in links]
+value = [[*x.translation(), *x.rotation().matrix().flat] for x in poses]
+import numpy as np
+value, expected = np.reshape(value, (2, 12))[(1, 4)], 0.0
+assert abs(value - expected) <= 1.4e-12, f"{value = }, {expected = }"

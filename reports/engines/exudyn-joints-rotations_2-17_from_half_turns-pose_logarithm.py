@@ -1,0 +1,17 @@
+# exudyn-joints 1.13.6, rotations, 2^-17 from half turns: LogSE3 is imprecise (twist (linear; angular) that leads to X in unit time).
+import numpy as np
+import exudyn as exu
+import exudyn.utilities as ut
+from exudyn import lieGroupBasics as lie
+from exudyn import rigidBodyUtilities as rbu
+q = np.array([6.117185651155329e-06, 0.6433231366387009, 0.7465840232303513, 0.1695512845280324])
+a = np.array([0.0, 0.0, 0.0])
+tau = np.array([0.0, 0.0, 0.0])
+q2 = np.array([6.117185651155329e-06, 0.6433231366387009, 0.7465840232303513, 0.1695512845280324])
+R, Q = rbu.EulerParameters2RotationMatrix(q), rbu.EulerParameters2RotationMatrix(q2)
+X, Y = rbu.HomogeneousTransformation(R, a), rbu.HomogeneousTransformation(Q, tau)
+T = lie.LogSE3(X)
+value = [*T[:3, 3], *rbu.Skew2Vec(T[:3, :3])]
+import numpy as np
+value, expected = np.reshape(value, (6,))[(4,)], 2.345453748725718
+assert abs(value - expected) <= 3.1e-12, f"{value = }, {expected = }"

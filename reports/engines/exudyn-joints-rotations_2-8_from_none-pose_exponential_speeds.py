@@ -1,0 +1,12 @@
+# exudyn-joints 1.13.6, rotations, 2^-8 from none: TExpSE3 is imprecise (J: the twist of exp x in its own frame is J x', at x = (v; v2)).
+import numpy as np
+import exudyn as exu
+import exudyn.utilities as ut
+from exudyn import lieGroupBasics as lie
+from exudyn import rigidBodyUtilities as rbu
+v = np.array([1.0, 0.0, 0.0])
+v2 = np.array([-0.0038674092776607976, 0.0, 0.0])
+value = lie.TExpSE3(np.r_[v, v2])
+import numpy as np
+value, expected = np.reshape(value, (6, 6))[(1, 4)], 0.0012891344977453646
+assert abs(value - expected) <= 1.2e-12, f"{value = }, {expected = }"

@@ -1,0 +1,18 @@
+# pybullet 3.2.7, chain 1: 0: revolute oblique, 0: revolute oblique beyond: URDF_MERGE_FIXED_LINKS, calculateMassMatrix is imprecise (M).
+from tempfile import NamedTemporaryFile
+import numpy as np
+import pybullet as p
+p.isConnected() or p.connect(p.DIRECT)
+file = NamedTemporaryFile("w", suffix=".urdf")
+print('<robot name="tree">\n<link name="world"><inertial><mass value="0"/><inertia ixx="0" ixy="0" ixz="0" iyy="0" iyz="0" izz="0"/></inertial></link>\n<link name="b0"><inertial><origin xyz="0.0 0.0 0.0"/><mass value="1.0"/>\n<inertia ixx="0.12337353724302569" ixy="0.0022322109530813396" ixz="0.0047732866321875764" iyy="0.12338345770538674" iyz="-0.009708313207070189" izz="0.08837039481138036"/></inertial></link>\n<joint name="joint_b0" type="continuous"><parent link="world"/><child link="b0"/>\n<origin xyz="0.0 0.0 0.0" rpy="0.0 0.0 0.0"/>\n<axis xyz="0.0 0.0 1.0"/>\n</joint>\n</robot>', file=file, flush=True)
+robot = p.loadURDF(file.name, useFixedBase=True, flags=p.URDF_MERGE_FIXED_LINKS | p.URDF_USE_INERTIA_FROM_FILE | p.URDF_MAINTAIN_LINK_ORDER)
+gravity = True
+p.setGravity(0.0, 0.0, 0.0)
+joints = ()
+moving = [0]
+links = [0]
+q = np.array([0.0])
+value = p.calculateMassMatrix(robot, q.tolist())
+import numpy as np
+value, expected = np.reshape(value, (1, 1))[(0, 0)], 0.08837039481138036
+assert abs(value - expected) <= 3.7e-13, f"{value = }, {expected = }"
