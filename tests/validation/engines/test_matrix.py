@@ -197,6 +197,15 @@ def test_identities_hold_where_they_must_and_show_a_fault_that_is_one() -> None:
     assert broken == {"ball": set(), "universal": {"C v + g = h"}}
 
 
+def test_scripts_of_trees_with_long_names_have_files_of_their_own(tmp_path: Path) -> None:
+    red, _ = _judged("universal", "coriolis_forces", "bias")
+    long = [replace(red, cell=replace(red.cell, model=f"scene 3: {'mocap weld, ' * 30}{last}")) for last in "ab"]
+    names = [scripts.file_of(one) for one in (red, *long)]
+    assert len(set(names)) == 3 and names[0] == "pinocchio-universal-coriolis_forces.py"
+    for name in names:
+        (tmp_path / name).write_text("")
+
+
 def test_the_script_of_a_red_cell_fails_by_its_assertion_and_a_right_one_does_not(tmp_path: Path) -> None:
     red, right = _judged("universal", "coriolis_forces", "bias")
     for one, failing in ((red, True), (right, False)):

@@ -14,6 +14,7 @@ import numpy as np
 
 from ...contract.raised import Raised, attempted
 from ..causes.grouping import cause_of
+from ..digests import digest
 from ..functions import FUNCTIONS
 from ..interface import Array, EnginePlugin
 from ..matrix import SEED, Judged, Truths, judged
@@ -30,6 +31,8 @@ _TIME = 120.0
 _SHAPES = re.compile(r" \((?:10 )?(?:\d+|L|m|n[qv])(?: \+ m|, (?:10 )?(?:\d+|L|m|n[qv])(?: \+ m)?)*\)")
 # Time to shrink one fault: cases of loops, and digits that are lost, take long to judge.
 _PATIENCE = 60.0
+# Length of a script's name without its ending and a digest: names of drawn trees list all their features.
+_LONGEST = 200
 # How the assertion ends that a script ends with (`text`); others are of the text that builds the tree.
 _ASSERTED = r"^AssertionError: (value = |\()"
 # What is said in place of the output of a script where the plug-in has none (`EngineModel.script`).
@@ -187,10 +190,11 @@ def _proof(plugin: EnginePlugin, red: Judged, script: str, output: str, failed: 
 
 
 def file_of(red: Judged) -> str:
-    """Name of the script's file."""
+    """Name of the script's file; a long one has a digest for what is cut, as file systems take 255 bytes."""
     cell = red.cell
-    stem = f"{cell.engine}-{cell.model}-{cell.function}".replace(":", "-").replace(" ", "_")
-    return "".join(letter for letter in stem if letter.isalnum() or letter in "-_") + ".py"
+    whole = f"{cell.engine}-{cell.model}-{cell.function}"
+    stem = "".join(letter for letter in whole.replace(":", "-").replace(" ", "_") if letter.isalnum() or letter in "-_")
+    return f"{stem}.py" if len(stem) <= _LONGEST else f"{stem[:_LONGEST]}-{digest(whole)}.py"
 
 
 def _thread(red: Judged) -> str:
