@@ -107,7 +107,7 @@ def changing_notes(
     s, X, nv = s[moves], changes[:, moves], model.nv
     span = min(1.0 / float(np.abs(s).min()), _FARTHEST / going if going else np.inf)
     change = matrix(model.integrate(q, span * v), u + span * onwards, t + span) - matrix(q, u, t)
-    scale = np.ones(X.shape)  # Coordinates in one unit, speeds in theirs of each mode.
+    scale = np.ones(X.shape)  # Coordinates in one unit, speeds in units of |s_k|.
     scale[: 2 * nv] = np.sqrt(inertia)[np.r_[0:nv, 0:nv], np.newaxis]
     scale[nv : 2 * nv] /= np.abs(s)
     shares = np.linalg.norm(scale * (change @ X), axis=0) / (np.abs(s) * np.linalg.norm(scale * X, axis=0))

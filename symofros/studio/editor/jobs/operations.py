@@ -166,13 +166,13 @@ def simulate(request: Json, tell: Tell) -> Json:
     chosen |= {key: number_of(options[key], key) for key in ("dt", "rtol", "atol") if options.get(key) is not None}
     inputs = laws_of(options.get("inputs"))
     began = time.perf_counter()
-    shown, told = -1, began
+    shown, reported = -1, began
 
     def progress(t: float) -> None:
-        nonlocal shown, told
+        nonlocal shown, reported
         percent, now = int(100 * t / t_end) if t_end else 100, time.perf_counter()
-        if percent > shown or now - told > PERIOD:
-            shown, told = percent, now
+        if percent > shown or now - reported > PERIOD:
+            shown, reported = percent, now
             tell(percent, 100, f"t = {t:.3g} s of {t_end:.6g} s")
 
     run = sf.simulate(

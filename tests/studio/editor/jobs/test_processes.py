@@ -188,8 +188,8 @@ def test_an_error_is_taken_apart(error: Exception, expected: tuple[str, ...]) ->
 
 
 def test_a_long_run_says_every_second_how_far_it_is(monkeypatch: pytest.MonkeyPatch) -> None:
-    """A hundredth of a run of a million seconds takes hours: its progress is told by the clock as well."""
-    told: list[str] = []
+    """A hundredth of a run of a million seconds takes hours: its progress is shown by the clock as well."""
+    reported: list[str] = []
 
     def simulate(*_: Any, progress: Any, **__: Any) -> None:
         for t in (1.0, 2.0, 3.0):
@@ -200,8 +200,8 @@ def test_a_long_run_says_every_second_how_far_it_is(monkeypatch: pytest.MonkeyPa
     monkeypatch.setattr(operations.sf, "simulate", simulate)
     request = {"file": "x.yaml", "text": PENDULUM.read_text(), "options": {"t_end": 1e6}}
     with pytest.raises(InterruptedError):
-        operations.simulate(request, lambda done, total, text: told.append(text))
-    assert told[-3:] == ["t = 1 s of 1e+06 s", "t = 2 s of 1e+06 s", "t = 3 s of 1e+06 s"]
+        operations.simulate(request, lambda done, total, text: reported.append(text))
+    assert reported[-3:] == ["t = 1 s of 1e+06 s", "t = 2 s of 1e+06 s", "t = 3 s of 1e+06 s"]
 
 
 # The machinery by itself, with workers that misbehave.

@@ -1,4 +1,4 @@
-"""Parts of spacecraft: a tank and a particle of its fuel lose alike, a source pulls towards itself."""
+"""Parts of spacecraft: a tank and a particle of its fuel lose the same, a source pulls towards itself."""
 
 from __future__ import annotations
 
