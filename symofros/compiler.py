@@ -329,8 +329,7 @@ def inconsistencies(system: System) -> Iterator[str]:
                 f" a cross), a root that holds warping lowers the twist of the tip by about {warping[1]:.1%}, and"
                 " raises loads that buckle it sideways. State GJ as torque times length over twist, as it is held."
             )
-        for plane in massless_shear(body):
-            across = "z" if plane == "y" else "y"
+        for plane, across in massless_shear(body):
             yield (
                 f"beam '{body.name}': functions of bend_{plane} and shear_{plane} together move no mass, as a shear can"
                 " undo the slope of bending: the mass matrix is singular, and there are equilibria, but no motion and"

@@ -126,8 +126,8 @@ def omitted_warping(beam: Beam, numbers: Numbers) -> tuple[float, float] | None:
     return (ratio, share) if ratio > OPEN_WALLS and share > MAX_TWIST_DROP else None
 
 
-def massless_shear(beam: Beam) -> Iterator[str]:
-    """Planes in which a shear undoes a bending, so that both together move no mass (docs/theory/rods.md, section 4)."""
+def massless_shear(beam: Beam) -> Iterator[tuple[str, str]]:
+    """Planes in which a shear undoes a bending, so that both move no mass, and axes across (docs/theory/rods.md, 4)."""
     functions = theory_of(beam).functions
     first = dict(zip(STRAINS, np.cumsum((0, *beam.counts[:-1])).tolist(), strict=True))
     for plane, across in _ACROSS.items():
@@ -136,7 +136,7 @@ def massless_shear(beam: Beam) -> Iterator[str]:
         bending, shear = (functions[first[name] : first[name] + getattr(beam, name)] for name in names)
         slopes = *(f.antiderivative() for f in bending), *shear
         if shear and not turned and not _condition(slopes) < MAX_CONDITION:
-            yield plane
+            yield plane, across
 
 
 def polar_mismatch(beam: Beam, numbers: Numbers) -> tuple[float, float] | None:
