@@ -187,11 +187,11 @@ def test_causes_take_no_cell_without_their_features(engine: str, model: str, fun
     [
         ("dart", "mjcf: dry friction", "joint_frictions", "wrong", "friction and springs of MJCF"),
         ("dart", "mjcf: dry friction", "joint_frictions", "crashes", None),
-        ("drake", "mjcf: borne weights + slide", "link_poses", "wrong", None),
+        ("drake", "mjcf: gravity compensation + slide", "link_poses", "wrong", None),
         ("drake", f"mjcf: {_HINGE_LAST} + elements of a body turned round", "bias", "wrong", "two joints of a body"),
         ("drake", f"mjcf: {_HINGE_LAST} + axis oblique", "bias", "wrong", None),
-        ("newton", "mjcf: gravity aside", "gravity", "wrong", "gravity of MJCF"),
-        ("newton", "mjcf: gravity aside", "mass_matrix", "wrong", None),
+        ("newton", "mjcf: oblique gravity", "gravity", "wrong", "gravity of MJCF"),
+        ("newton", "mjcf: oblique gravity", "mass_matrix", "wrong", None),
         ("dart", "mjcf: reference angle", "link_poses", "wrong", "poses of MJCF"),
         ("dart", "mjcf: site turned", "link_poses", "wrong", None),
         ("pybullet", "urdf: inertia in full", "bias", "wrong", None),
@@ -242,5 +242,5 @@ def test_files_of_two_formats_have_no_reader_in_common() -> None:
 
 
 def test_a_line_names_drawn_trees_by_their_numbers() -> None:
-    drawn = ["chain 3: gravity aside, 0: shifted", "urdf: friction alone", "scene 11: 0: motor", "ball"]
+    drawn = ["chain 3: oblique gravity, 0: shifted", "urdf: friction alone", "scene 11: 0: motor", "ball"]
     assert shown.named(drawn) == "chain 3, urdf: friction alone, scene 11 and 1 more"

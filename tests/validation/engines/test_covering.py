@@ -126,7 +126,7 @@ def test_each_kind_of_joint_is_in_chains_with_each_other_feature() -> None:
     made = list(chains.trees().values())
     pairs = {frozenset(map(_plain, both)) for tree in made for both in combinations(tree.features, 2)}
     kinds = ("ball", "universal", "planar", "helical oblique", "cylindrical", "offset hinges", "ellipsoid")
-    others = ("free base", "ball beyond", "prismatic oblique beyond", "turned", "round mass", "armature")
+    others = ("free base", "ball beyond", "prismatic oblique beyond", "turned", "spherical inertia", "armature")
     assert {(kind, other) for kind in kinds for other in others} == {
         (kind, other) for kind in kinds for other in others if frozenset((kind, other)) in pairs
     }

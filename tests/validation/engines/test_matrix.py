@@ -48,7 +48,7 @@ def test_pinocchio_is_right_for_every_kind_of_joint(kind: str) -> None:
     [
         "fixed links amid",
         "hinges at one point",
-        "gravity aside",
+        "oblique gravity",
         "kilometres",
         "base 10 km away",
         "free base 10 km away",

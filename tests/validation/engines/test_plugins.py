@@ -76,7 +76,7 @@ def test_copies_of_drake_have_what_is_changed_in_a_context(what: str) -> None:
 
 def test_steps_of_dart_continue_rotation_vectors_beyond_half_a_turn() -> None:
     _installed("dart")
-    (tree,) = (one for name, one in chains.trees().items() if name.startswith("chain 43: free base, gravity aside"))
+    (tree,) = (one for name, one in chains.trees().items() if name.startswith("chain 43: free base, oblique gravity"))
     (cell,) = cells(OWN["dart"], tree, ("step_stiffness_implicit",))
     assert cell.verdict == "right"
 

@@ -45,8 +45,8 @@ def _passive() -> list[Tree]:
         Tree("springs and dampers on branches", _chain("both, branched", both, both, slide, branches=True)),
         Tree("a damped free body", (body,)),
         Tree("a damped hinge on a damped free base", _carried(body)),
-        Tree("borne weights", borne),
-        Tree("borne weights of fixed links", _compensated_and_fixed()),
+        Tree("gravity compensation", borne),
+        Tree("gravity compensation of fixed links", _compensated_and_fixed()),
     ]
 
 
@@ -269,13 +269,13 @@ def _states() -> list[Tree]:
     )
     kinds = {
         "integrators": integrator,
-        "integrators taken early": integrator._replace(is_early=True),
+        "integrators with actearly": integrator._replace(is_early=True),
         "integrators at their limits": integrator._replace(limits=(-0.25, 0.3751)),
         "filters": filtered,
-        "filters taken early": filtered._replace(is_early=True),
+        "filters with actearly": filtered._replace(is_early=True),
         "filters at their limits": filtered._replace(limits=(-0.25, 0.3751)),
         "exact filters": exact,
-        "exact filters taken early": exact._replace(is_early=True),
+        "exact filters with actearly": exact._replace(is_early=True),
         "exact filters faster than a step": exact._replace(times=(0.0078125,)),
     }
     pulled = Muscle(0.625, (-1.0, 1.0), (0.75, 1.05), peak=10.0)
@@ -298,7 +298,7 @@ def _states() -> list[Tree]:
         *made,
         Tree("actuators with states and without", links, actuators=mixed),
         Tree("muscles with activations", links, actuators=muscles),
-        Tree("muscles with activations taken early", links, actuators=early),
+        Tree("muscles with activations with actearly", links, actuators=early),
         Tree("muscles with activations before a motor", links, actuators=(*muscles, motor)),
     ]
 
@@ -329,7 +329,7 @@ def _affine() -> list[Tree]:
     made = {
         "affine gains": every,
         "affine gains of activations": moved,
-        "affine gains of activations taken early": tuple(map(early, moved)),
+        "affine gains of activations with actearly": tuple(map(early, moved)),
         "affine gains of activations before a motor": (*moved, motor),
         "affine gains of activations after a motor": (motor, *moved),
         "affine gains of activations at their limits": tuple(

@@ -153,7 +153,7 @@ def trees() -> Mapping[str, Tree]:
         Tree("huge before tiny masses", (_scaled(heavy[0], 1e8), heavy[1], _scaled(heavy[2], 1e-8))),
         Tree("millimetres", tuple(_resized(one, 1e-3) for one in _chain("small"))),
         Tree("kilometres", tuple(_resized(one, 1e3) for one in _chain("large"))),
-        Tree("gravity aside", light, gravity=shifted(draw, 20.0)),
+        Tree("oblique gravity", light, gravity=shifted(draw, 20.0)),
         Tree("armature everywhere", armature),
         _far("base 100 m away", (64.0, -48.0, 60.0)),
         _far("base 10 km away", (6400.0, -4800.0, 6000.0)),

@@ -18,7 +18,7 @@ _SOLIDS = {
     "primitive box": "trimesh.primitives.Box(extents={size}, transform={pose})",
     "primitive box by its corners": "trimesh.primitives.Box(bounds=[{low}, {high}])",
     "primitive box by its corners, the other way round": "trimesh.primitives.Box(bounds=[{high}, {low}])",
-    "primitive ball": "trimesh.primitives.Sphere(radius={radius}, center={middle})",
+    "primitive sphere": "trimesh.primitives.Sphere(radius={radius}, center={middle})",
     "primitive cylinder": "trimesh.primitives.Cylinder(radius={radius}, height={length}, transform={pose})",
     "primitive capsule": "trimesh.primitives.Capsule(radius={radius}, height={length}, transform={pose})",
 }

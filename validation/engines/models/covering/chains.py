@@ -26,7 +26,7 @@ _OWN = ("universal", "planar", "helical oblique", "free between links")
 _RARE = ("euler zyx", "translation", "revolute unbounded", "ellipsoid")
 _MIMIC = "mimic oblique" + _BEYOND
 _BASE = {"root on a hinge": (Joint("revolute", axis=OBLIQUE),), "free base": (Joint("free"),)}
-_GRAVITY = {"weight": (0.0, 0.0, -9.81), "gravity aside": (3.0, -6.0, 2.0)}
+_GRAVITY = {"weight": (0.0, 0.0, -9.81), "oblique gravity": (3.0, -6.0, 2.0)}
 
 
 def _joints(*names: str, after: str = "") -> dict[str, tuple[Joint, ...]]:
@@ -40,7 +40,7 @@ _PASSIVE: Mapping[str, Mapping[str, Any]] = {
     "damper": {"damping": 0.75},
     "spring": {"stiffness": 3.0, "rest": 0.25},
     "sprung damper": {"damping": 0.5, "stiffness": 2.0, "rest": -0.5},
-    "borne weight": {},
+    "gravity compensation": {},
     "force limits": {"force_limits": (-0.125, 0.25)},
 }
 _DRIVES = {
@@ -53,10 +53,12 @@ _DRIVES = {
     "force limited": Actuator(gear=2.0, gain=6.0, control=0.75, force_limits=(-0.5, 0.25)),
     "integrator": Actuator(gear=3.0, activation=Activation("integrator", 0.25)),
     "filter": Actuator(gear=2.0, control=0.5, activation=Activation("filter", 0.375, (0.125,))),
-    "early filter": Actuator(control=0.5, activation=Activation("exact filter", 0.375, (0.125,), is_early=True)),
+    "filter with actearly": Actuator(
+        control=0.5, activation=Activation("exact filter", 0.375, (0.125,), is_early=True)
+    ),
 }
 _FEW = (*tuple(_PASSIVE)[4:], *tuple(_DRIVES)[2:])
-_LINES = {"no tendon": 0.0, "sum": 0.0, "path": 0.0, "heavy path": 0.5}
+_LINES = {"no tendon": 0.0, "sum": 0.0, "path": 0.0, "path with inertia": 0.5}
 
 
 class _Family(NamedTuple):
@@ -86,7 +88,7 @@ _MOTION = _Family(
         "joint": _joints("ball", *_SERIES, *_OWN, *_RARE),
         "second joint": _BEHIND,
         "placement": dict.fromkeys(("oblique placement", "at the origin", "shifted", "turned")),
-        "mass": dict.fromkeys(("oblique mass", "mass at the origin", "round mass")),
+        "mass": dict.fromkeys(("oblique mass", "mass at the origin", "spherical inertia")),
         "armature": _ARMATURE,
     },
     (
@@ -115,13 +117,13 @@ _FORCES = _Family(
     (
         ("ball", *_FEW, *_ARMED, *_TENDONS, "by a tendon"),
         (*_FEW, *_TENDONS, "by a tendon"),
-        ("early filter", "filter", "integrator", "heavy path"),
+        ("filter with actearly", "filter", "integrator", "path with inertia"),
         (),
     ),
     # Armature is an actuator of its own in Drake; steps that are asked for on the way change activations.
     {
         "motor": ("sensors", *_ARMED),
-        "sensors": ("integrator", "filter", "early filter"),
+        "sensors": ("integrator", "filter", "filter with actearly"),
         "by a tendon": ("no tendon",),
         "ball": ("spring", "sprung damper", "force limits"),
     },
@@ -143,11 +145,13 @@ def _link(draw: np.random.Generator, name: str, parent: int, joints: Sequence[Jo
         all_joints = [replace(one, armature=(0.75,) * _SPEEDS.get(one.kind, 1)) for one in all_joints]
     passive = {} if first.kind == "fixed" else _PASSIVE[own.get("passive", "loose")]
     all_joints[-1] = replace(all_joints[-1], **passive)
-    made = replace(link(draw, name, parent, *all_joints), compensation=0.75 * (own.get("passive") == "borne weight"))
+    made = replace(
+        link(draw, name, parent, *all_joints), compensation=0.75 * (own.get("passive") == "gravity compensation")
+    )
     match own.get("mass"):
         case "mass at the origin":
             return replace(made, com=ORIGIN)
-        case "round mass":
+        case "spherical inertia":
             return replace(made, inertia=((0.125, 0.0, 0.0), (0.0, 0.125, 0.0), (0.0, 0.0, 0.125)))
     return made
 

@@ -226,11 +226,11 @@ FEATURES: Features = {
         "frame around the first body": [(_A, f'^<frame pos="0.125 -0.25 0.5" euler="{_RADIANS}"/>')],
     },
     "gravity": {
-        "gravity aside": _on("option", gravity="1 -2 -3"),
+        "oblique gravity": _on("option", gravity="1 -2 -3"),
         "gravity switched off": [("option", '+<flag gravity="disable"/>')],
         "two sections of options": [("option", {"gravity": "1 -2 -3"}), (".", '+<option timestep="0.25"/>')],
     },
-    "borne weights": {"borne weights": [*_on(_A, gravcomp="0.25"), *_on(_B, gravcomp="1")]},
+    "gravity compensation": {"gravity compensation": [*_on(_A, gravcomp="0.25"), *_on(_B, gravcomp="1")]},
     "sites": {
         "site": [(_B, '+<site name="o0" pos="0.1 -0.2 0.3"/>')],
         "site turned": [(_B, '+<site name="o0" pos="0.1 -0.2 0.3" euler="0.5 0.6 0.7"/>')],

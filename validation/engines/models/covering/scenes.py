@@ -102,7 +102,7 @@ CHAIN: Table[str] = {
         "filter": '<general dyntype="filter" dynprm="0.25" gainprm="2" biastype="affine" biasprm="0.1 -1 -0.5" {at}/>',
         "filterexact": '<general dyntype="filterexact" dynprm="0.25" gainprm="2" {at}/>',
         "actearly": '<general dyntype="integrator" gaintype="affine" gainprm="1 -0.5 -4" actearly="true" {at}/>',
-        "early filter": '<general dyntype="filterexact" dynprm="0.25" gainprm="2" '
+        "filter with actearly": '<general dyntype="filterexact" dynprm="0.25" gainprm="2" '
         'actearly="true" actrange="-0.25 0.125" {at}/>',
         "ctrlrange": '<general gaintype="affine" gainprm="2 0 -1" ctrlrange="-0.125 0.25" {at}/>',
         "forcerange": '<general gainprm="2" biastype="affine" biasprm="0 0 -3" forcerange="-0.25 0.125" {at}/>',

@@ -169,7 +169,7 @@ FEATURES: Features = {
     "gravity": {
         "gravity left out": [(_DIRECTION + _MAGNITUDE, "")],
         "direction of gravity left out": [(_DIRECTION, "")],
-        "gravity aside": [(_DIRECTION, _DIRECTION.replace("(0, 0, -1)", "(0.6, 0, -0.8)"))],
+        "oblique gravity": [(_DIRECTION, _DIRECTION.replace("(0, 0, -1)", "(0.6, 0, -0.8)"))],
         "direction of gravity of length 2": [(_DIRECTION, _DIRECTION.replace("-1", "-2"))],
         "magnitude of gravity left out": [(_MAGNITUDE, "")],
         "no gravity": [(_MAGNITUDE, _MAGNITUDE.replace("9.81", "0"))],

@@ -155,7 +155,7 @@ def _sections() -> Iterator[tuple[str, Reading]]:
     yield title, Reading("mjcf", text, Tree(title, unit, gravity=(1.0, -2.0, -3.0)))
     borne = tuple(replace(one, compensation=part) for one, part in zip(_LINKS, (0.25, 1.0), strict=True))
     weights = file(JOINT_A + MA, JOINT_B + MB, at=('gravcomp="0.25"', 'gravcomp="1"'))
-    yield _of("borne weights", weights, ("weight_shares",), borne)
+    yield _of("gravity compensation", weights, ("weight_shares",), borne)
 
 
 def files() -> dict[str, Reading]:

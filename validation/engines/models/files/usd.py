@@ -92,7 +92,7 @@ def _stage() -> Iterator[tuple[str, Reading]]:
     yield _of("gravity left out", file(scene=""), body)
     aside = "vector3f physics:gravityDirection = (0.6, 0, -0.8)\n    float physics:gravityMagnitude = 2.5"
     for name, scene, head, gravity in (
-        ("gravity aside", aside, _HEAD, (1.5, 0.0, -2.0)),
+        ("oblique gravity", aside, _HEAD, (1.5, 0.0, -2.0)),
         ("up along Y, gravity left out", "", _HEAD.replace('"Z"', '"Y"'), (0.0, -9.81, 0.0)),
         ("up axis and gravity left out", "", _HEAD.replace('\n    upAxis = "Z"', ""), (0.0, -9.81, 0.0)),
         ("up along Y, gravity along Z", _DOWN, _HEAD.replace('"Z"', '"Y"'), (0.0, 0.0, -9.81)),

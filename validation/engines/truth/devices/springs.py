@@ -123,7 +123,7 @@ def _of_turns() -> dict[str, Device]:
             "qfrc_passive",
             lambda s: [*(-3 * (s.v - place)), *(-3 * rotation_vector(turn_of(s.q)))],
         ),
-        "free_body_borne": Device(
+        "free_body_gravity_compensation": Device(
             "body gravcomp", weighed, whole, "qfrc_passive[:3]", lambda s: exact((-1.5, 3.0, 12.0))
         ),
     }

@@ -289,7 +289,7 @@ def test_methods_of_order_four_agree_to_that_order_in_coordinates_and_on_their_m
     ("name", "other", "function"),
     [
         ("actuators with filters", "actuators of all kinds", "actuated_forces"),
-        ("actuators with filters taken early", "actuators with filters", "actuated_forces"),
+        ("actuators with filters with actearly", "actuators with filters", "actuated_forces"),
         ("actuators with exact filters faster than a step", "actuators with filters", "activations_after_step"),
         ("actuators with exact filters", "actuators with filters", "activations_after_step"),
         ("actuators with filters at their limits", "actuators with filters", "activations_after_step"),
