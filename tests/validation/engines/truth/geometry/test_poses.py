@@ -1,4 +1,7 @@
-"""Truths of placements, screws, lines and planes, and spatial inertia: by matrix exponentials, by points, by powers."""
+"""Truths of lines, planes and screws, and what else the engines at hand don't answer or have otherwise.
+
+What they do answer, `test_asked.py` and `test_mujoco.py` hold against the truth.
+"""
 
 from __future__ import annotations
 
@@ -7,13 +10,13 @@ import pytest
 from numpy.typing import NDArray
 from scipy.linalg import expm, logm
 
-from validation.engines.functions.beside import TURNS
-from validation.engines.functions.poses import POSES
+from validation.engines.functions import FUNCTIONS
 from validation.engines.interface import Slot, State
 from validation.engines.models import single
 from validation.engines.proving.pieces import Layout
 from validation.engines.truth.dynamics import Point, Truth, digits, random_state
-from validation.engines.truth.geometry.poses import ASIDE, AWAY, BACK, BESIDE, CENTRE, MASS, MOMENTS, SEQUENCES
+from validation.engines.truth.geometry.poses import ASIDE, AWAY, BESIDE
+from validation.engines.truth.geometry.vectors import FRICTION
 
 Array = NDArray[np.float64]
 _TURNS = single.trees()["rotations"]
@@ -22,7 +25,7 @@ _STATE: State = random_state(_TURNS, _LAYOUT, 2)
 
 
 def _of(name: str, state: State = _STATE) -> Array:
-    return digits(Truth(_TURNS, _LAYOUT).value((POSES | TURNS)[name].truth, Point.of(state)))
+    return digits(Truth(_TURNS, _LAYOUT).value(FUNCTIONS[name].truth, Point.of(state)))
 
 
 def _matrix(q: Array) -> Array:
@@ -41,88 +44,23 @@ def _pose(R: Array, p: Array) -> Array:
     return T
 
 
-def _flat(T: Array) -> Array:
-    return np.array([*T[:3, 3], *T[:3, :3].flat])
-
-
-def _hat(twist: Array) -> Array:
-    T = np.zeros((4, 4))
-    T[:3, :3], T[:3, 3] = _cross(twist[3:]), twist[:3]
-    return T
-
-
-def _vee(T: Array) -> Array:
-    return np.array([*T[:3, 3], T[2, 1], T[0, 2], T[1, 0]])
-
-
 _X, _Y = _pose(_matrix(_STATE.q), _STATE.a), _pose(_matrix(_STATE.q2), _STATE.tau)
-_APART = np.linalg.inv(_X) @ _Y
 _TWIST = np.array([*_STATE.v, *_STATE.v2])
-_EXPECTED = {
-    "pose_composed": _flat(_X @ _Y),
-    "pose_unset": _flat(np.eye(4)),
-    "pose_drawn": _STATE.v,
-    "rotation_cost": 3 - 2 * np.cos([np.linalg.norm(_vee(np.real(logm(_APART)))[3:])]),
-    "pose_inverse": _flat(np.asarray(np.linalg.inv(_X), dtype=float)),
-    "pose_relative": _flat(_APART),
-    "pose_of_point": (_X @ [*_STATE.v, 1.0])[:3],
-    "pose_logarithm": _vee(np.real(logm(_X))),
-    "pose_difference": _vee(np.real(logm(_APART))),
-    "pose_exponential": _flat(expm(_hat(_TWIST))),
-    "pose_halfway": _flat(_X @ expm(np.real(logm(_APART)) / 4)),
-}
 
 
-@pytest.mark.parametrize("name", _EXPECTED)
-def test_placements_are_of_the_matrix_exponential(name: str) -> None:
-    np.testing.assert_allclose(_of(name), _EXPECTED[name], rtol=1e-12, atol=1e-12)
-
-
-def test_rates_of_twists_are_differences_of_exponentials() -> None:
-    size, found = 1e-6, []
-    for unit in np.eye(6):
-        before, after = (expm(_hat(_TWIST + sign * size * unit)) for sign in (-1, 1))
-        found.append(_vee(np.linalg.inv(expm(_hat(_TWIST))) @ (after - before)) / (2 * size))
-    np.testing.assert_allclose(_of("pose_exponential_speeds"), np.transpose(found), atol=1e-9)
-    step = np.array([0.5, -0.25, 0.125, 0.25, 0.75, -0.5])
-    rates = _vee(np.real(logm(_X @ expm(size * _hat(step)))) - np.real(logm(_X @ expm(-size * _hat(step))))) / (
-        2 * size
-    )
-    np.testing.assert_allclose(_of("pose_logarithm_rates") @ step, rates, atol=1e-8)
-
-
-def test_wrenches_have_the_power_that_twists_give_them() -> None:
-    there = _of("wrench_transform")
-    np.testing.assert_allclose(there.T @ np.linalg.inv(_of("twist_transform_back")), np.eye(6), atol=1e-12)
-    moved = _X @ _hat(_TWIST) @ np.linalg.inv(_X)
-    np.testing.assert_allclose(np.linalg.solve(_of("twist_transform_back"), _TWIST), _vee(moved), atol=1e-12)
-
-
-def test_products_of_twists_are_of_their_matrices() -> None:
-    other = np.array([0.5, -0.25, 0.125, 0.25, 0.75, -0.5])
-    A, B = _hat(_TWIST), _hat(other)
-    np.testing.assert_allclose(_of("twist_cross") @ other, _vee(A @ B - B @ A), atol=1e-14)
-
-
-def test_quaternions_move_as_their_matrices() -> None:
-    size = 1e-6
-    for name, turns_before in (("quaternion_rates", False), ("quaternion_rates_fixed", True)):
-        rates = _of(name)
-        moving = (_matrix(_STATE.q + size * rates) - _matrix(_STATE.q - size * rates)) / (2 * size)
-        spin = moving @ _matrix(_STATE.q).T if turns_before else _matrix(_STATE.q).T @ moving
-        np.testing.assert_allclose(spin, _cross(_STATE.v), atol=1e-9)
+def test_what_is_asked_of_draws_and_of_costs() -> None:
+    np.testing.assert_allclose(_of("pose_drawn"), _STATE.v)
+    turned = np.real(logm(_matrix(_STATE.q).T @ _matrix(_STATE.q2)))
+    angle = np.linalg.norm([turned[2, 1], turned[0, 2], turned[1, 0]])
+    np.testing.assert_allclose(_of("rotation_cost"), [3 - 2 * np.cos(angle)], rtol=1e-12)
 
 
 def _about(axis: int, angle: float) -> Array:
     return np.asarray(expm(angle * _cross(np.eye(3)[axis])))
 
 
-def test_angles_are_of_turns_about_axes() -> None:
+def test_speeds_of_angles_are_of_turns_about_axes() -> None:
     x, y, z = _STATE.v
-    np.testing.assert_allclose(_of("rotation_of_rpy"), (_about(2, z) @ _about(1, y) @ _about(0, x)).flat, atol=1e-14)
-    np.testing.assert_allclose(_of("rotation_of_zyz"), (_about(2, x) @ _about(1, y) @ _about(2, z)).flat, atol=1e-14)
-    roll, pitch, yaw = _of("rotation_to_rpy")
-    np.testing.assert_allclose(_about(2, yaw) @ _about(1, pitch) @ _about(0, roll), _matrix(_STATE.q), atol=1e-14)
     size, columns = 1e-6, []
     for unit in np.eye(3):
         moved = [
@@ -182,30 +120,6 @@ def test_screws_turn_about_their_lines() -> None:
     assert np.linalg.norm(twist[3:]) == pytest.approx(1.0)
 
 
-def test_a_body_has_the_energy_of_its_parts() -> None:
-    """Point masses at the ends of principal axes have the same mass, centre and moments."""
-    moments, axes = np.linalg.eigh(np.array(MOMENTS))
-    spread = np.sqrt((moments.sum() / 2 - moments) * 3 / MASS)
-    points = [
-        np.array(CENTRE) + sign * size * axis for size, axis in zip(spread, axes.T, strict=True) for sign in (-1, 1)
-    ]
-    each = MASS / 6
-
-    def energy(T: Array, twist: Array) -> float:
-        moved = [(T @ [*x, 1.0])[:3] for x in points]
-        return float(sum(each / 2 * np.sum((twist[:3] + np.cross(twist[3:], x)) ** 2) for x in moved))
-
-    assert _TWIST @ _of("spatial_inertia") @ _TWIST / 2 == pytest.approx(energy(np.eye(4), _TWIST))
-    assert _TWIST @ _of("spatial_inertia_placed") @ _TWIST / 2 == pytest.approx(energy(_X, _TWIST))
-    assert np.allclose(_of("spatial_inertia_sum"), _of("spatial_inertia") + _of("spatial_inertia_placed"))
-    assert np.allclose(_of("spatial_momentum"), _of("spatial_inertia") @ _TWIST)
-    # A body that moves has the energy of its parts as they move; its momentum changes with it.
-    size, other = 1e-6, np.array([0.5, -0.25, 0.125, 0.25, 0.75, -0.5])
-    before, after = (energy(expm(sign * size * _hat(_TWIST)), other) for sign in (-1, 1))
-    assert other @ _of("spatial_inertia_rate") @ other / 2 == pytest.approx((after - before) / (2 * size), rel=1e-7)
-    assert np.allclose(_of("spatial_momentum_cross"), _of("spatial_inertia_rate") @ _TWIST)
-
-
 def test_the_nearer_and_the_same_way() -> None:
     line = _of("pose_halfway_apart")
     assert np.allclose(line[:3], _STATE.a + (_STATE.tau - _STATE.a) / 4)
@@ -217,22 +131,41 @@ def test_the_nearer_and_the_same_way() -> None:
     assert list(_of("are_rotations")) == [1.0, 0.0, 0.0]
 
 
-def test_three_angles_are_of_turns_about_axes() -> None:
-    for axes, row in zip(SEQUENCES, _of("rotations_of_three_angles"), strict=True):
-        one, two, three = (_about("xyz".index(axis), angle) for axis, angle in zip(axes, _STATE.v, strict=True))
-        np.testing.assert_allclose(row, (one @ two @ three).flat, atol=1e-14)
+def _placed(axis: int, angle: float, length: float) -> Array:
+    return _pose(_about(axis, angle), length * np.eye(3)[axis])
 
 
-def test_rotations_on_end_have_a_pitch_of_a_quarter_turn() -> None:
-    x, _, z = _STATE.v
-    for sign, row in zip((1, -1), _of("rotations_on_end"), strict=True):
-        np.testing.assert_allclose(row, (_about(2, z) @ _about(1, sign * np.pi / 2) @ _about(0, x)).flat, atol=1e-14)
+@pytest.mark.parametrize("name", ["pose_by_denavit", "pose_by_modified_denavit"])
+def test_parameters_place_along_two_axes(name: str) -> None:
+    length, alpha, d = _STATE.v
+    x, z = _placed(0, alpha, length), _placed(2, _STATE.a[0], d)
+    T = x @ z if "modified" in name else z @ x
+    np.testing.assert_allclose(_of(name), [*T[:3, 3], *T[:3, :3].flat], atol=1e-14)
 
 
-@pytest.mark.parametrize(
-    ("name", "u"), [("rotation_of_z", _STATE.v + AWAY), ("rotation_of_z_back", _STATE.v / 64 + BACK)]
-)
-def test_the_shortest_turn_is_about_the_normal_of_both(name: str, u: Array) -> None:
-    R, normal = _of(name).reshape(3, 3), np.cross([0.0, 0.0, 1.0], u)
-    np.testing.assert_allclose(R[:, 2], u / np.linalg.norm(u), atol=1e-14)
-    np.testing.assert_allclose(R @ normal, normal, atol=1e-12)
+def test_a_body_that_turns_about_a_line_leaves_its_points() -> None:
+    u = (_STATE.v + AWAY) / np.linalg.norm(_STATE.v + AWAY)
+    twist = _of("twist_about_line")
+    np.testing.assert_allclose(twist[3:], u)
+    np.testing.assert_allclose(twist[:3] + np.cross(u, _STATE.a), np.zeros(3), atol=1e-14)
+
+
+def _crossed_momentum(x: Array) -> Array:
+    force, moment = np.split(_of("spatial_inertia") @ x, 2)
+    return np.r_[np.cross(x[3:], force), np.cross(x[3:], moment) + np.cross(x[:3], force)]
+
+
+def test_momenta_are_those_of_the_inertia() -> None:
+    np.testing.assert_allclose(
+        _of("momentum_regressor") @ _of("inertia_parameters"), _of("spatial_inertia") @ _TWIST, rtol=1e-13, atol=1e-14
+    )
+    steps = 1e-6 * np.eye(6)
+    slopes = [(_crossed_momentum(_TWIST + step) - _crossed_momentum(_TWIST - step)) / 2e-6 for step in steps]
+    np.testing.assert_allclose(_of("spatial_momentum_cross_dv"), np.transpose(slopes), atol=1e-7)
+
+
+def test_edges_of_friction_add_up_to_the_force() -> None:
+    edges, (normal, *tangents) = _of("friction_edges"), _of("friction_edges_back")
+    np.testing.assert_allclose(edges.sum(), normal)
+    for mu, tangent, pair in zip(FRICTION, tangents, edges.reshape(2, 2), strict=True):
+        np.testing.assert_allclose(mu * (pair[0] - pair[1]), tangent)
