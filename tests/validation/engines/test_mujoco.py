@@ -73,18 +73,6 @@ def test_an_answer_without_a_part_is_a_red_cell(tree: Tree, asked_for: str, give
     assert judge("planted", tree, asked_for, np.asarray(answer.value), want).verdict == "wrong"
 
 
-@pytest.mark.parametrize("name", ["tendon_speeds", "actuator_speeds"])
-def test_rates_of_lengths_are_those_of_differences(name: str) -> None:
-    tree = acting.trees()["actuators on tendons"]
-    lengths = name.replace("speeds", "lengths")
-    (one,) = _judged(tree, name).values()
-    model, state = MUJOCO.build(tree), one.answer.state
-    assert not isinstance(model, Unsupported) and state is not None and one.want is not None
-    step = 1e-6
-    before, after = (model.call(lengths, replace(state, q=state.q + sign * step * state.v)) for sign in (-1.0, 1.0))
-    assert np.allclose((np.asarray(after) - np.asarray(before)) / (2.0 * step), one.want.value, atol=1e-8)
-
-
 @pytest.mark.parametrize("function", ["constraint_residuals", "constraint_points"])
 def test_an_anchor_that_stays_is_a_red_cell(function: str) -> None:
     tree = loops.trees()["anchor of a connect constraint changed"]

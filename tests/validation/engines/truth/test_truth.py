@@ -68,26 +68,6 @@ def test_a_step_along_the_rate_of_a_quaternion_turns_by_the_arc_tangent(speed: f
     np.testing.assert_allclose(ends[2][[2, 3]], [half, 1.0], rtol=1e-15)
 
 
-def test_a_double_pendulum_has_the_mass_matrix_of_textbooks() -> None:
-    hinge = Joint("revolute", axis=(0.0, 1.0, 0.0))
-    links = (
-        Link("a", -1, (hinge,), 2.0, (0.0, 0.0, -1.0), ((0.0,) * 3,) * 3),
-        Link(
-            "b",
-            0,
-            (Joint("revolute", p=(0.0, 0.0, -1.0), axis=(0.0, 1.0, 0.0)),),
-            3.0,
-            (0.0, 0.0, -0.5),
-            ((0.0,) * 3,) * 3,
-        ),
-    )
-    layout = Layout(2, 2, HINGES.slots[:2])
-    M = digits(Truth(Tree("double", links), layout).value(lambda t, s: t.M(exact([0.3, 0.7])), None))  # type: ignore[arg-type]
-    c = math.cos(0.7)
-    off = 3.0 * (0.25 + 0.5 * c)
-    np.testing.assert_allclose(M, [[2.0 + 3.0 * (1.25 + c), off], [off, 0.75]], rtol=1e-15)
-
-
 def test_newton_euler_forces_match_lagrange() -> None:
     tree = tree_of("revolute y")
     truth, point = Truth(tree, HINGES), Point.of(random_state(tree, HINGES, 1))

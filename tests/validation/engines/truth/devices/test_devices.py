@@ -1,11 +1,10 @@
-"""Small models of MJCF: formulas by hand, MuJoCo's answers, and an answer that is off."""
+"""Small models of MJCF: MuJoCo's answers, and an answer that is off."""
 
 from __future__ import annotations
 
 import numpy as np
 import pytest
 
-from validation.engines.functions.devices import DEVICES
 from validation.engines.interface import Slot
 from validation.engines.matrix import SEED, Judged, Truths, asked, judged
 from validation.engines.models import single
@@ -14,7 +13,7 @@ from validation.engines.plugins.mujoco.devices import together
 from validation.engines.proving.pieces import Layout
 from validation.engines.truth.devices import COMPILED
 from validation.engines.truth.devices import DEVICES as GROUPS
-from validation.engines.truth.dynamics import Point, Truth, digits, random_state
+from validation.engines.truth.dynamics import random_state
 from validation.engines.verdicts import judge
 from validation.engines.workers import Job
 
@@ -25,30 +24,11 @@ _STATE = random_state(_TREES["drives"], _LAYOUT, 3)
 _OFF = {"tendon_clipped_with_gear", "tendon_clipped_sensor_with_gear", "compiled_dof_invweight0"}
 
 
-def _value(name: str) -> np.ndarray:
-    return digits(Truth(_TREES["drives"], _LAYOUT).value(DEVICES[name].truth, Point.of(_STATE)))
-
-
 def _judged(group: str) -> dict[str, Judged]:
     pytest.importorskip("mujoco")
     plugin = OWN["mujoco"]
     names = tuple(name for name in asked(plugin, _TREES[group]) if ":" not in name)
     return {one.cell.function: one for one in judged(plugin, Job("mujoco", _TREES[group], names, SEED), Truths())}
-
-
-def test_truths_of_devices_are_those_by_hand() -> None:
-    v, a, u = _STATE.v, _STATE.a, _STATE.tau
-    x, r = v[0], a[0]
-    d = 0.25 + 0.625 * (1 - (1 - (2 - x) / 4) ** 2 / 0.5) if x < 0 else 0.25 + 0.625 * ((2 - x) / 4) ** 2 / 0.5
-    wanted = -2 / (0.875 * 0.03125) * r + d / (0.875 * 0.03125) ** 2 * (2 - x)
-    by_hand = {
-        "drive_servo_of_damping_ratio": 8 * (u[0] - x) - 2 * 0.75 * np.sqrt(8 * 2) * r,
-        "drive_pid_fed_forward": 8 * (u[0] - x) + 2 * (u[1] - r) + u[2],
-        "spring_polynomial": -(2 * (x - 0.25) - 0.5 * (x - 0.25) ** 2 + 0.75 * (x - 0.25) ** 3),
-        "limit_of_square_impedance": max(u[0] / 2, (1 - d) * u[0] / 2 + d * wanted),
-    }
-    for name, value in by_hand.items():
-        np.testing.assert_allclose(_value(name), [value], rtol=1e-13, err_msg=name)
 
 
 @pytest.mark.parametrize("group", GROUPS | COMPILED)
