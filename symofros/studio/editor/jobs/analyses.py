@@ -77,6 +77,11 @@ class Analysed:
         start = self.start
         return sf.equilibrium(self.model, start.q, start.v, self.u, held=self.held, par=start.par)
 
+    @property
+    def where(self) -> str:
+        """What is linearised about, in words."""
+        return "the stated pose" if self.options.get("about") == "pose" else "the equilibrium"
+
     def about(self) -> tuple[Array, Array, Array, tuple[str, ...]]:
         """The state to linearise about: the equilibrium, or the stated one, q (nq), v (nv) and z (nz), and notes."""
         if self.options.get("about") == "pose":
@@ -139,9 +144,9 @@ def modes(asked: Analysed, tell: Tell) -> Json:
         label = f"mode {i + 1}, {found.frequencies[i] / (2 * np.pi):.4g} Hz"
         states = asked.model.integrate(np.repeat(q[None], len(turns), axis=0), swing)
         motions[label] = asked.motion(turns, np.asarray(states))
-    where = "the stated pose" if asked.options.get("about") == "pose" else "the equilibrium"
+    count = "1 mode" if len(s) == 1 else f"{len(s)} modes"
     return {
-        "title": f"{len(s)} modes about {where}; each is drawn at 1 Hz, undamped and enlarged",
+        "title": f"{count} about {asked.where}; each is drawn at 1 Hz, undamped and enlarged",
         "tables": [table("Modes", head, rows)],
         "motions": motions,
         "start": asked.starts(q),
@@ -155,6 +160,8 @@ def linear(asked: Analysed, tell: Tell) -> Json:
     q, v, z, notes = asked.about()
     model = asked.model
     found = sf.state_space(model, q, v, asked.u, par=asked.start.par, z=z)
+    # The same equations: what is said of the modes is said of the eigenvalues. A and B are stated of any bending.
+    vibrations = sf.modes(model, q, v, asked.u, par=asked.start.par, z=z, beam_limit=np.inf)
     n, names = len(found.A), model.names
     free = [*names.v, *(speed_column(name, names.q) for name in names.v), *names.z]
     states = free if n == len(free) else [f"xi{i + 1}" for i in range(n)]
@@ -162,7 +169,7 @@ def linear(asked: Analysed, tell: Tell) -> Json:
     eigenvalues = [[f"s{i + 1}", *_eigenvalue(x)] for i, x in enumerate(s)]
     reduced = n < len(free)
     return {
-        "title": f"xi' = A xi + B u: {n} states, {model.nu} inputs"
+        "title": f"xi' = A xi + B u about {asked.where}: {n} states, {model.nu} inputs"
         + ("; xi are coordinates of what the constraints leave" if reduced else ""),
         "tables": [
             table("Eigenvalues of A", ["Eigenvalue", *EIGENVALUE], eigenvalues),
@@ -183,8 +190,8 @@ def linear(asked: Analysed, tell: Tell) -> Json:
         ],
         "motions": {"state": asked.motion(np.zeros(1), q[None])},
         "start": asked.starts(q),
-        "notes": list(notes),
-        "beams": [],
+        "notes": list(dict.fromkeys([*notes, *vibrations.notes])),
+        "beams": bent_beams(vibrations.bendings),
     }
 
 

@@ -24,6 +24,7 @@ from symofros.base.arrays import Array
 from symofros.base.names import rate_symbol, speed_column, symbol_of
 from symofros.description.yaml import write_yaml
 from symofros.errors import EquilibriumError, SymofrosError, did_you_mean
+from symofros.simulation.results.notes import distinct
 from symofros.studio.editor.jobs.analyses import Analysed, equilibrium, linear, modes
 from symofros.studio.editor.jobs.request import Json, Tell, number_of, numbers_for_json, table
 from symofros.studio.editor.jobs.starts import laws_of, stated_start, whole_of
@@ -58,18 +59,19 @@ def _at(asked: Analysed, name: str, value: float) -> None:
 def _frequencies(asked: Analysed, tell: Tell, name: str, values: Array) -> Json:
     """Frequency of each mode over the parameter; where a value has no equilibrium, its curves break."""
     found: list[Array] = []
-    notes: list[str] = []
+    said: list[tuple[str, str]] = []
     for i, value in enumerate(values.tolist()):
-        tell(i, len(values), f"{name} = {value:.4g}")
+        label = f"{name} = {value:.4g}"
+        tell(i, len(values), label)
         try:
             _at(asked, name, value)
-            q, v, z, said = asked.about()
+            q, v, z, notes = asked.about()
             vibrations = sf.modes(asked.model, q, v, asked.u, par=asked.start.par, z=z)
             found.append(vibrations.frequencies / (2 * np.pi))
-            notes += said
+            said += ((label, note) for note in (*notes, *vibrations.notes))
         except (EquilibriumError, sf.BeamTheoryError) as error:
             found.append(np.zeros(0))
-            notes.append(f"{name} = {value:.4g}: {error.problem.what}; {error.problem.found}")
+            said.append((label, f"{error.problem.what}; {error.problem.found}"))
     count = max(map(len, found))
     padded = np.array([[*each, *[np.nan] * (count - len(each))] for each in found]).reshape(len(values), count)
     curves = [
@@ -84,9 +86,21 @@ def _frequencies(asked: Analysed, tell: Tell, name: str, values: Array) -> Json:
         "title": f"Frequencies |s|/2π at {len(values)} values of {name}",
         "tables": [table(f"Frequencies over {name}", head, rows)],
         "plots": [plot],
-        "notes": list(dict.fromkeys(notes)),
+        "notes": _of_values(said),
         "beams": [],
     }
+
+
+def _of_values(said: list[tuple[str, str]]) -> list[str]:
+    """Notes with the first value that each is about; those that differ in numbers alone are one."""
+    of: dict[str, list[str]] = {}
+    for label, note in said:
+        first = next((each for each in of if len(distinct((each, note))) == 1), note)
+        of.setdefault(first, []).append(label)
+    return [
+        f"{labels[0]}{f' and {len(labels) - 1} more' if len(labels) > 1 else ''}: {note}"
+        for note, labels in of.items()
+    ]
 
 
 def _motions(asked: Analysed, tell: Tell, name: str, values: Array) -> Json:
@@ -96,7 +110,7 @@ def _motions(asked: Analysed, tell: Tell, name: str, values: Array) -> Json:
     chosen: Json = {"method": options["method"]} if options.get("method") else {}
     chosen |= {key: number_of(options[key], key) for key in ("dt", "rtol") if options.get(key) is not None}
     laws, motions = laws_of(options.get("inputs")), {}
-    notes: list[str] = []
+    said: list[tuple[str, str]] = []
     signals = {symbol_of(each): ("q", i) for i, each in enumerate(model.names.q)}
     signals |= {speed_column(each, model.names.q): ("v", i) for i, each in enumerate(model.names.v)}
     curves: dict[str, list[Json]] = {each: [] for each in signals}
@@ -113,7 +127,7 @@ def _motions(asked: Analysed, tell: Tell, name: str, values: Array) -> Json:
             y = (run.q if kind == "q" else run.v)[:, column]
             curves[signal].append({"name": label, "x": numbers_for_json(run.t), "y": numbers_for_json(y)})
         ends.append([f"{value:.6g}", *run.q[-1].tolist(), "" if run.outcome.ok else run.outcome.reason])
-        notes += run.outcome.notes
+        said += ((label, note) for note in run.outcome.notes)
     units = [asked.units.get(each, "") for each in model.names.q]
     plots = [
         {"title": signal, "x_title": "t [s]", "unit": units[column] if kind == "q" else "", "curves": curves[signal]}
@@ -125,7 +139,7 @@ def _motions(asked: Analysed, tell: Tell, name: str, values: Array) -> Json:
         "tables": [table("Coordinates at the end", head, ends)],
         "plots": plots,
         "motions": motions,
-        "notes": list(dict.fromkeys(notes)),
+        "notes": _of_values(said),
         "beams": [],
     }
 

@@ -215,8 +215,7 @@ def picture(page: Page) -> Picture:
 
     def shoot(name: str) -> None:
         if PICTURES:
-            if page.locator("iframe.view").count() > 0:
-                without_overlays(page)
+            without_overlays(page)
             page.wait_for_timeout(300)  # Movements of the diagram come to rest.
             file = Path(PICTURES) / f"editor-{name}.png"
             page.screenshot(path=file)

@@ -129,6 +129,25 @@ def test_small_windows_cut_nothing_off(
     look()
 
 
+@pytest.mark.parametrize("name", ["arm.yaml", "an_arm_with_a_rather_long_name_for_a_phone.yaml"])
+def test_a_phone_shows_that_work_is_unsaved(opened: Serve, page: Page, name: str) -> None:
+    page.set_viewport_size({"width": 400, "height": 760})
+    opened(name, source=steps.PENDULUM)
+    page.get_by_role("button", name="Rigid body", exact=True).click()
+    word = page.get_by_role("heading", level=1).get_by_text("unsaved", exact=True)
+    expect(word).to_be_visible()
+    lies_within(word, 400)
+
+
+def test_results_fit_a_window_that_became_lower(arm: Server, page: Page) -> None:
+    """As when a page is enlarged to 200 %: the results keep within what is left, above the status."""
+    page.get_by_role("banner").get_by_role("button", name="No problems").click()
+    expect(steps.results(page)).to_be_visible()
+    page.set_viewport_size({"width": 640, "height": 380})
+    lies_within(steps.results(page), 640, 380)
+    assert page.evaluate("document.documentElement.scrollHeight") <= 380
+
+
 def test_the_progress_of_a_job_fits_a_phone(arm: Server, page: Page) -> None:
     page.set_viewport_size({"width": 375, "height": 667})
     page.route("**/api/jobs/*", lambda route: None)  # Its end is not answered.

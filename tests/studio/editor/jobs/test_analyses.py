@@ -44,6 +44,7 @@ def test_a_pendulum_rests_and_swings_as_its_formula_says() -> None:
     assert rest["start"] == {"q": pytest.approx(math.pi / 2)} and rest["motions"]["at rest"]["t"] == [0.0]
     found = analysed(what="modes")
     omega = math.sqrt(G / L)
+    assert found["title"].startswith("1 mode about the equilibrium;")
     (row,) = rows(found, "Modes").values()
     assert row == [pytest.approx(omega / (2 * math.pi)), pytest.approx(omega), 0.0, 0.0, pytest.approx(omega), "q"]
     ((name, motion),) = found["motions"].items()
@@ -67,9 +68,20 @@ def test_held_coordinates_need_an_effort_and_the_posture_itself_can_be_analysed(
     up = analysed(what="linear", about="pose", q0={"q": -math.pi / 2})
     reals = sorted(row[3] for row in rows(up, "Eigenvalues").values())
     assert reals == [pytest.approx(-math.sqrt(G / L)), pytest.approx(math.sqrt(G / L))]
+    assert up["notes"] == [] and "about the stated pose" in up["title"]
     # An input moves the equilibrium.
     turned = analysed(what="equilibrium", u={"q": torque / 2}, q0={"q": 1.0})
     assert rows(turned, "Coordinates")["q [rad]"] == [pytest.approx(math.pi / 3)]
+
+
+def test_what_is_noted_of_modes_is_noted_of_linear_models_and_of_sweeps() -> None:
+    """At 0.5 rad it falls: neither a rest nor a steady motion, whatever its length."""
+    at = {"about": "pose", "q0": {"q": 0.5}}
+    (note,) = analysed(what="modes", **at)["notes"]
+    assert note.startswith("the state is neither an equilibrium")
+    assert analysed(what="linear", **at)["notes"] == [note]
+    (swept,) = analysed(what="sweep", of="frequencies", parameter="l", low=L, high=2 * L, count=3, **at)["notes"]
+    assert swept == f"l = {L} and 2 more: {note}"
 
 
 SLIDER = PENDULUM.replace(

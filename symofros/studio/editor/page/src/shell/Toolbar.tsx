@@ -202,7 +202,7 @@ export function Toolbar() {
             ← {document.trail.join(" › ")}
           </button>
         ) : null}
-        {document.path}
+        <span className="file-path">{document.path}</span>
         {document.dirty ? <span className="dirty">unsaved</span> : null}
       </h1>
       <Work />
