@@ -10,8 +10,10 @@ from ..reporting.record import Block, Bullets, Table
 from .gather import Entry
 from .trust import uncovered
 
-# A cause of an engine's errors in the list that the report on engines begins with.
-_CAUSES = re.compile(r"\*\*\[(.+?)\]\(.*?\)\*\*, (\d+) cause")
+# An engine in the list that the report on engines begins with: its name, how many causes, the first of them.
+_CAUSES = re.compile(r"\*\*\[(.+?)\]\(.*?\)\*\*, (\d+) causes?(?:, first)?: (.+?)\.?(?: Shows in:|$)", re.DOTALL)
+# Engines whose first cause is stated; of the others the number alone.
+_EXPLAINED = 2
 # In the scene's cell: its title within a link.
 _SCENE = re.compile(r"\[(.+?)\]")
 _SENTENCE = re.compile(r"(?<=[.?!])\s+(?=[A-Z])")
@@ -23,7 +25,7 @@ def asked_first(entries: Mapping[str, Entry]) -> Table:
     """Five questions; those that no report answers yet are left out."""
     answers = (
         ("Which method for my scene?", _methods(_blocks(entries, "pareto")), "pareto"),
-        ("Which engine is wrong, and why?", _engines(_blocks(entries, "engines")), "engines"),
+        ("Which engine is wrong, and why?", engines_wrong(_blocks(entries, "engines")), "engines"),
         ("How far may a beam bend?", _bending(entries), "accuracy"),
         ("Is it faster than MuJoCo on a humanoid?", _humanoid(_blocks(entries, "timing")), "timing"),
         ("What is not covered?", uncovered(entries), "trust"),
@@ -51,14 +53,17 @@ def _methods(blocks: tuple[Block, ...]) -> str:
         for scene, names in chosen.items()
     )
     said = "; ".join(best)
-    return f"Fastest at most errors: {said}." if said else ""
+    return f"Fastest for most of the errors allowed: {said}." if said else ""
 
 
-def _engines(blocks: tuple[Block, ...]) -> str:
+def engines_wrong(blocks: tuple[Block, ...]) -> str:
+    """The engines by their number of causes, with what the first cause of those that have most is."""
     lists = (block for block in blocks if isinstance(block, Bullets))
     found = [match for block in lists for item in block.items for match in _CAUSES.findall(item)]
     ordered = sorted(found, key=lambda each: -int(each[1]))
-    return f"By number of causes: {', '.join(f'{name} {number}' for name, number in ordered)}." if found else ""
+    first = "; ".join(f"{name}, {number} causes, first: {why}" for name, number, why in ordered[:_EXPLAINED])
+    others = ", ".join(f"{name} {number}" for name, number, _ in ordered[_EXPLAINED:])
+    return f"{first}." + f" Fewer causes: {others}." * bool(others) if found else ""
 
 
 def _bending(entries: Mapping[str, Entry]) -> str:

@@ -138,9 +138,13 @@ def trust(entries: Mapping[str, Entry]) -> Report:
 def _headline(checked: Checked | None) -> str:
     if checked is None:
         return "The cross-check has not been made."
-    engines = sorted({row.engine for row in _independent(checked)})
-    return f"As far as it goes: {counted(len(engines), 'independent engine')} agree with it on every one of " + (
-        f"{counted(len(checked.models), 'model')}; look for yours below."
+    rows = _independent(checked)
+    judged = {row.model for row in rows}
+    # Several routes lead to one engine: by its own reader, its loops, its beams.
+    engines = sorted({row.engine.partition("-")[0] for row in rows})
+    return (
+        f"As far as it goes: {len(judged)} of {counted(len(checked.models), 'model')} agree with each independent "
+        + (f"engine that can represent them ({', '.join(engines)}); look for yours below.")
     )
 
 
@@ -174,12 +178,13 @@ def _agreed(checked: Checked | None) -> str:
     near = worst(rows)
     middle = median(_digits(row) for row in rows)
     said = f"{len(rows) - len(wrong)} of {counted(len(rows), 'comparison')} with independent engines agree"
+    said += f" ({', '.join(dict.fromkeys(row.engine for row in rows))})"
     said += f", half of them to {middle:.1f} digits or more"
     if near is not None:
         said += (
             f"; nearest to its bound is {near.title} of {near.model}, {digits(near.error)} of {digits(near.tolerance)}"
         )
-    return f"{said} ({', '.join(dict.fromkeys(row.engine for row in rows))})."
+    return f"{said}."
 
 
 def _digits(row: Comparison) -> float:

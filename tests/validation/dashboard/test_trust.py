@@ -9,6 +9,7 @@ from typing import Any
 
 import pytest
 
+from validation.cross_check.record import is_independent
 from validation.dashboard.catalogue import TOPICS
 from validation.dashboard.gather import Entry, gather
 from validation.dashboard.index import headline, index
@@ -46,6 +47,9 @@ def test_its_answers_are_figures_of_the_reports(report: Report) -> None:
     assert f"{len(check['models'])} models" in said and f"0 of {check['independent']}" not in said
     races = {(row["model"], row["function"], row["peer"]) for row in timing["entries"]}
     assert f"of {len(races)} races" in said
+    # Routes to an engine are no further engines.
+    engines = {row["engine"].partition("-")[0] for row in check["comparisons"] if is_independent(row["engine"])}
+    assert f"models agree with each independent engine that can represent them ({', '.join(sorted(engines))})" in said
 
 
 def test_its_rows_are_found_by_joint_loop_beam_format_and_engine(report: Report) -> None:

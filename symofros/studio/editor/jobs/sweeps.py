@@ -98,8 +98,7 @@ def _of_values(said: list[tuple[str, str]]) -> list[str]:
         first = next((each for each in of if len(distinct((each, note))) == 1), note)
         of.setdefault(first, []).append(label)
     return [
-        f"{labels[0]}{f' and {len(labels) - 1} more' if len(labels) > 1 else ''}: {note}"
-        for note, labels in of.items()
+        f"{labels[0]}{f' and {len(labels) - 1} more' if len(labels) > 1 else ''}: {note}" for note, labels in of.items()
     ]
 
 

@@ -215,7 +215,8 @@ def picture(page: Page) -> Picture:
 
     def shoot(name: str) -> None:
         if PICTURES:
-            without_overlays(page)
+            if page.locator("iframe.view, canvas").count() > 0:  # The 3-D pane's picture, or a replay's.
+                without_overlays(page)
             page.wait_for_timeout(300)  # Movements of the diagram come to rest.
             file = Path(PICTURES) / f"editor-{name}.png"
             page.screenshot(path=file)
