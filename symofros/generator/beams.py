@@ -147,9 +147,9 @@ def _numbers(beam: Beam, q: int, v: int, values: dict[str, float], in_series: in
 def _omitted(beam: Beam, values: dict[str, float], in_series: int) -> OmittedStiffness | None:
     """What the order of a beam's equations leaves out of its stiffness under loads (beams.md, 6)."""
     axial = not beam.foreshortening or beam.retain == "zeroth_order"
-    turns = bool(beam.twist and (beam.bend_y or beam.bend_z))
-    rigid = "" if not turns or (beam.bend_y and beam.bend_z) else "z" if beam.bend_y else "y"
-    couples = turns and not rigid and beam.retain != "all"
+    lacking = [axis for axis, n in (("y", beam.bend_y), ("z", beam.bend_z), ("x", beam.twist)) if not n]
+    rigid = lacking[0] if len(lacking) == 1 else ""
+    couples = not lacking and beam.retain != "all"
     if beam.elastic.is_exact or not (axial or couples or rigid):
         return None
     # What the tip carries turns with it but in the lowest order, where beams in series lack this together.
@@ -158,7 +158,7 @@ def _omitted(beam: Beam, values: dict[str, float], in_series: int) -> OmittedSti
         f"retain: {beam.retain}" if beam.foreshortening or beam.retain == "zeroth_order" else "foreshortening: false"
     )
     coupling = cache(partial(_coupling, replace(beam, retain="all"), values)) if couples else None
-    return OmittedStiffness(order, axial, rigid, coupling, count)
+    return OmittedStiffness(order, axial, rigid, coupling, count, turning=beam.retain == "zeroth_order")
 
 
 def _strain_energy(beam: Beam, values: dict[str, float]) -> tuple[Graph, Form]:

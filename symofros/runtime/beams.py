@@ -11,7 +11,7 @@ import numpy as np
 import numpy.typing as npt
 
 from symofros.native import native_number
-from symofros.runtime.beam_orders import BentBeam, LeftOut, OmittedStiffness, left_out, left_out_notes
+from symofros.runtime.beam_orders import BentBeam, LeftOut, OmittedStiffness, Turning, left_out, left_out_notes
 from symofros.runtime.calls.kernel import Array
 
 # Judges each step of a run, and has the numbers of (24).
@@ -28,6 +28,8 @@ _STRAIGHT = 1e-9
 _LARGEST = 1e100
 # Tangent stiffness over elastic stiffness below which an axial load counts as critical.
 _CRITICAL = 1e-9
+# Imaginary part, of an eigenvalue, that rounding gives to two that are equal.
+_REAL = 1e-6
 # Stations of a block in C (SYM_BEAM_BLOCK).
 _BLOCK = 8
 # Largest slope [rad] from which the number of beams that would do is no longer stated: true slopes stay below it.
@@ -253,7 +255,12 @@ class ElasticBeam:
         return error
 
     def left_out(
-        self, elastic: Array, stations: Array, forces: Array, free: Array | None = None
+        self,
+        elastic: Array,
+        stations: Array,
+        forces: Array,
+        free: Array | None = None,
+        turning: tuple[Array, Array] | None = None,
     ) -> tuple[LeftOut, ...]:
         """What is worth a note of the stiffness that the order leaves out.
 
@@ -262,12 +269,13 @@ class ElasticBeam:
             stations: Stations x/L of the section forces (s); none where they are not known.
             forces: Section forces (s, 6).
             free: Changes of the elastic coordinates that constraints leave (n, k), where there are some.
+            turning: As of `Turning`, where that is known and left out.
         """
         if self.omitted is None:
             return ()
         angles = self.angles * self.scale
         beam = BentBeam(self.length, self.xi, angles, self.counts, self.elastic_stiffness(), free)
-        parts = left_out(self.omitted, beam, elastic, stations, forces)
+        parts = left_out(self.omitted, beam, elastic, (stations, forces), Turning(*turning) if turning else None)
         return tuple(part for part in parts if abs(part.change) > NOTED_ERROR)
 
     def difference_step(self, elastic: Array) -> Array:
@@ -288,15 +296,17 @@ class ElasticBeam:
             One without axial loads, more under compression, below one in tension; zero past the critical load, where
             the stiffness has a negative direction.
         """
-        stiffness, symmetric = self.elastic_stiffness(), 0.5 * (tangent + tangent.T)
+        stiffness = self.elastic_stiffness()
         try:
             inverse = np.linalg.inv(np.linalg.cholesky(stiffness))
         except np.linalg.LinAlgError:  # A direction without elastic stiffness.
             return 1.0
-        if np.linalg.eigvalsh(inverse @ symmetric @ inverse.T)[0] <= _CRITICAL:
+        # Of forces that follow, as a thrust along the tip, it is not symmetric: complex pairs are no loss of stiffness.
+        left = np.linalg.eigvals(inverse @ tangent @ inverse.T)
+        if np.any((np.abs(left.imag) <= _REAL * np.abs(left)) & (left.real <= _CRITICAL)):
             return 0.0
-        energy = float(elastic @ stiffness @ elastic)
-        return energy / float(elastic @ symmetric @ elastic) if energy > 0.0 else 1.0
+        energy, loaded = float(elastic @ stiffness @ elastic), abs(float(elastic @ tangent @ elastic))
+        return energy / max(loaded, _CRITICAL * energy) if energy > 0.0 else 1.0
 
 
 @dataclass(frozen=True)

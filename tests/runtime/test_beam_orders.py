@@ -33,6 +33,50 @@ def strip(share: float, **entries: Any) -> sf.Model:
     return sf.compile(system(sf.Joint("clamp"), loads=(load,), **(stiffness | entries)))
 
 
+INTERPRETED = sf.Options(backend="interpreter")
+
+
+def turning(axis: tuple[float, float, float], spin: float, tip: float, **entries: Any) -> tuple[sf.Equilibrium, Any]:
+    """A beam of unit length, mass and stiffness with a mass on its tip, in a steady spin, and its modes there."""
+    beam = sf.Beam("b", sf.Joint("hub", "revolute", axis=axis), 1.0, 1.0, EI_y=1.0, EI_z=1.0, **entries)
+    mass = sf.Inertia(tip + 1e-9, moments=(1e-3, 6e-4, 6e-4))
+    carried = sf.RigidBody("m", sf.Joint("j", "fixed", parent="b", frame="tip"), mass)
+    model = sf.compile(sf.System("s", (beam, carried), gravity=(0.0, 0.0, 0.0)), INTERPRETED)
+    steady = sf.equilibrium(model, v={"hub": spin}, held=["hub"])
+    return steady, sf.modes(model, steady.q, steady.v)
+
+
+@pytest.mark.parametrize(
+    ("axis", "spin", "tip", "planes", "said"),
+    [
+        ((1, 0, 0), 2.0, 0.0, (2, 2), "frequencies"),
+        ((1, 0, 0), 1.0, 0.5, (2, 2), "frequencies"),
+        ((1, 0, 0), 0.01, 0.0, (2, 2), ""),
+        ((1, 0, 0), 2.0, 0.0, (0, 2), "stiffness"),
+        ((0, 0, 1), 1.0, 0.0, (2, 0), "stiffness"),
+        ((0, 0, 1), 1.0, 0.5, (2, 0), "stiffness"),
+        ((0, 0, 1), 0.5, 0.0, (2, 0), ""),
+    ],
+)
+def test_what_rotation_does_to_a_bent_beam_is_said(axis: Any, spin: float, tip: float, planes: Any, said: str) -> None:
+    """In the plane of rotation, and about the beam's axis: shafts of the lowest order know no critical speed."""
+    found = {
+        retain: turning(axis, spin, tip, bend_y=planes[0], bend_z=planes[1], retain=retain)
+        for retain in ("zeroth_order", "first_order")
+    }
+    ratio = np.divide(*(min(f for f in found[retain][1].frequencies if f > 1e-3) for retain in reversed(found)))
+    change = ratio - 1.0 if planes == (2, 2) else ratio**2 - 1.0
+    rel = 1.0 if tip and said == "frequencies" else 0.03  # Equations of what the tip carries keep Coriolis forces.
+    steady, modes = found["zeroth_order"]
+    for result in (steady, modes):
+        parts = [part for bending in result.bendings for part in bending.left_out]
+        assert [abs(part.change) for part in parts] == (pytest.approx([abs(change)], rel=rel) if said else [])
+        assert all(part.of_frequency == (said == "frequencies") for part in parts)
+    assert [said in note for note in modes.notes if "leaves out" in note] == [True] * bool(said)
+    assert abs(change) < 0.01 or said
+    assert not any("leaves out" in note for note in found["first_order"][1].notes)
+
+
 def rotor(**entries: Any) -> sf.Model:
     return sf.compile(system(sf.Joint("hub", "revolute"), EI_y=EI, bend_z=3, **entries))
 
@@ -56,7 +100,8 @@ def test_spin_stiffens_by_what_is_said(entries: dict[str, Any], spin: float) -> 
     entry = "foreshortening: false" if "foreshortening" in entries else "retain: zeroth_order"
     for result in (steady, modes):
         assert changes(result.bendings) == (pytest.approx([gained], rel=0.05) if gained > 0.01 else [])
-        said = [note for note in result.notes if f"leaves out what axial forces do to its stiffness ({entry})" in note]
+        forces = "axial forces" if "foreshortening" in entries else "axial forces and rotation"
+        said = [note for note in result.notes if f"leaves out what {forces} do to its stiffness ({entry})" in note]
         # The steady motion leaves the beam straight, whatever its stiffness.
         assert len(said) == int(gained > 0.01 and result is modes)
     assert not any("leaves out" in note for result in found["more"][:2] for note in result.notes)
@@ -87,7 +132,7 @@ def test_a_straight_column_bears_no_note_but_of_a_critical_load(share: float, wo
         said = [note for note in notes if "leaves out" in note]
         assert len(said) == bool(words) and all(words in note for note in said)
     assert changes(rest.bendings) == pytest.approx([-share if share < 1.0 else -1.0], rel=0.02)
-    assert sum("leaves out what axial forces do" in note for note in modes.notes) == 1
+    assert sum("leaves out what axial forces and rotation do" in note for note in modes.notes) == 1
 
 
 @pytest.mark.parametrize("retain", ["zeroth_order", "first_order"])
@@ -123,6 +168,19 @@ def test_a_loop_that_holds_the_tip_of_a_column_counts(sides: Any, turns: Any, fi
     assert changes(sf.modes(model, model.neutral()).bendings) == pytest.approx([-0.5], rel=0.02)
 
 
+def test_a_torque_couples_both_planes_where_twist_is_rigid() -> None:
+    """What its moment is said to do is what the strain energy of a beam that hardly twists does."""
+    load = sf.BeamLoad((0.0, 0.0, 1e-3), (0.5, 0.0, 0.0), at=1.0, axes="world")
+    stiffness = {"EI_y": 1.0, "EI_z": 2.0, "GJ": 1e4, "rhoJ": 1e-6, "bend_y": 2, "bend_z": 2, "family": "polynomial"}
+    said = {}
+    for twist, retain in ((0, "all"), (1, "first_order")):
+        beam = sf.Beam("b", sf.Joint("c"), 1.0, 1.0, twist=twist, retain=retain, loads=(load,), **stiffness)
+        rest = sf.equilibrium(sf.compile(sf.System("s", (beam,), gravity=(0.0, 0.0, 0.0)), INTERPRETED))
+        (said[twist],) = changes(rest.bendings)
+        assert sum("leaves out how its loads couple bending" in note for note in rest.notes) == 1
+    assert said[0] == pytest.approx(said[1], rel=0.02) and -0.2 < said[0] < -0.02
+
+
 def test_runs_batches_diagrams_and_efforts_say_it_too() -> None:
     described = column(0.5, "zeroth_order")
     model = sf.compile(described)
@@ -135,7 +193,7 @@ def test_runs_batches_diagrams_and_efforts_say_it_too() -> None:
     still = np.zeros(model.nv)
     efforts = sf.actuator_efforts(model, run.q[-1], still, still, model.names.v)
     for notes in (run.outcome.notes, batch.outcome(1).notes, drawn.outcome.notes, efforts.notes):
-        assert sum("leaves out what axial forces do to its stiffness" in note for note in notes) == 1
+        assert sum("leaves out what axial forces and rotation do to its stiffness" in note for note in notes) == 1
     assert changes(run.bendings) == pytest.approx([-0.5], rel=0.02)
 
 

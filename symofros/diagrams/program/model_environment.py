@@ -156,8 +156,9 @@ class Models:
         return self._chosen(name, Options(backend="interpreter"), "dynamics")
 
     def sections(self, name: str) -> Model:
-        """A model of a mechanism that has the forces in its beams; interpreted, as `contacts`."""
-        return self._chosen(name, Options(backend="interpreter"), "section_forces")
+        """A model of a mechanism that has the forces in its beams, and how they turn; interpreted, as `contacts`."""
+        functions = "section_forces", "frame_pose", "frame_velocity", "mass_matrix"
+        return self._chosen(name, Options(backend="interpreter"), *functions)
 
     def contacts(self, name: str) -> Model:
         """A model of a mechanism that has the forces of its contacts; interpreted, because a run asks for them once."""

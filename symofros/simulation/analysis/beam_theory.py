@@ -142,7 +142,10 @@ def with_left_out(
         replace(
             bending,
             left_out=beam.left_out(
-                q[:, beam.in_q].mean(axis=0), *known, free=None if free is None else free[beam.in_v]
+                q[:, beam.in_q].mean(axis=0),
+                *known,
+                free=None if free is None else free[beam.in_v],
+                turning=turning_of(model, beam, (q, v, u), par),
             ),
         )
         for beam, bending, known in zip(beams, bendings, loaded, strict=True)
@@ -181,6 +184,25 @@ def section_forces_of(
         return _UNKNOWN
     forces = model.section_forces(*states, lam if model.nc else None, par=par, t=t)[:, at].mean(axis=0)
     return np.array([sections[k][1] for k in at]), forces
+
+
+def turning_of(
+    model: Model, beam: ElasticBeam, states: tuple[Array, Array, Array], par: ArrayLike | None
+) -> tuple[Array, Array] | None:
+    """Rates of a beam's root in states q, v, u of a motion (n, 3), in its axes, and M of its elastic coordinates.
+
+    None where its equations have all that rotation does, or where it is not known.
+    """
+    if beam.omitted is None or not beam.omitted.turning:
+        return None
+    q, v, u = states
+    try:
+        turned = model.frame_velocity(beam.name, q, v, u=u, par=par)[:, 3:]
+        R = model.frame_pose(beam.name, q, u=u, par=par)[1]
+        M = mass_matrix(model, q[-1], v[-1], u[-1], par, 0.0)
+    except SymofrosError:  # Options.functions or frames left out what this takes.
+        return None
+    return np.einsum("nij,ni->nj", R, turned), M[beam.in_v, beam.in_v]
 
 
 def _linearised_amplifications(

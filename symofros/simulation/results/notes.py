@@ -182,8 +182,8 @@ NOTES: Mapping[str, NoteKind] = {
     ),
     "beam order": NoteKind(
         "beam '…' leaves out …, with which …",
-        "loads give or take stiffness that the order of a beam's equations leaves out (`retain`, `foreshortening`)",
-        "`retain: all`, or `first_order` where axial forces are left out",
+        "its order (`retain`, `foreshortening`), or a lack of functions, leaves out what loads or rotation do to it",
+        "`retain: all`, `first_order` where axial forces or rotation are left out, or functions that are named",
     ),
     "too few functions": NoteKind(
         "beam '…' has too few shape functions for mode …: its frequency of … rad/s is too high by about … %…",

@@ -72,9 +72,9 @@ def test_an_export_says_what_programs_do_not_judge(tmp_path: Path) -> None:
     ]
     notes = sf.export(sf.System("s", beams), "c", tmp_path / "c").notes
     assert [note for note in notes if "beams leave out" in note] == [
-        "orders of beams leave out stiffness under loads: 'low' (what axial forces do (retain: zeroth_order)), 'first'"
-        " (how loads couple bending and twist (bend_z: 0)); programs do not judge how much that is in a motion:"
-        " `simulate` of the same one says it"
+        "orders of beams leave out stiffness under loads: 'low' (what axial forces and rotation do (retain:"
+        " zeroth_order)), 'first' (how loads couple bending and twist (bend_z: 0)); programs do not judge how much that"
+        " is in a motion: `simulate` of the same one says it"
     ]
     (rods,) = (note for note in notes if "how far rods bend" in note)
     assert rods.startswith("programs do not judge how far rods bend between their sections: 'rod'; `simulate` of the")

@@ -67,6 +67,20 @@ def test_a_column_past_its_critical_load_has_no_bent_equilibrium() -> None:
     assert not sf.equilibrium(cantilever().with_parameters(P=0.95 * critical_load())).notes
 
 
+@pytest.mark.parametrize("across", [0.0, 0.05])
+def test_a_thrust_that_follows_the_tip_has_no_critical_load_at_rest(across: float) -> None:
+    """Beck's column at four times Euler's load: K_t is not symmetric, and its symmetric part says nothing."""
+    load, k = sf.BeamLoad((0.0, across, 0.0), at=1.0, axes="world"), math.sqrt(10.0)
+    beam = sf.Beam("b", sf.Joint("c"), 1.0, 1.0, EI_z=1.0, bend_y=3, loads=(load,))
+    thrust = (sf.Load((-(k**2), 0.0, 0.0)),)
+    tip = sf.RigidBody("tip", sf.Joint("j", parent="b", frame="tip"), sf.Inertia(1e-9), loads=thrust)
+    model = sf.compile(sf.System("s", (beam, tip), gravity=(0.0, 0.0, 0.0)), sf.Options(backend="interpreter"))
+    rest = sf.equilibrium(model)
+    assert rest.notes == ()
+    deflection = across / k**3 * (math.sin(k) - k * math.cos(k))
+    assert model.frame_pose("tip", rest.q)[0][1] == pytest.approx(deflection, rel=0.03)
+
+
 def test_modes_of_a_state_beyond_the_limit_are_refused() -> None:
     straight, bent = cantilever().neutral(), np.array([0.1, 0.0, 0.0])
     assert not any("theory errs" in note for note in sf.modes(cantilever(), straight).notes)

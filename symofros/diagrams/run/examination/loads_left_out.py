@@ -12,7 +12,7 @@ from symofros.diagrams.run.examination.examined import Examined
 from symofros.diagrams.run.examination.prescribed import Signals, prescribed_inputs
 from symofros.diagrams.run.python_blocks import NotKeptError
 from symofros.runtime.beams import bending_notes
-from symofros.simulation.analysis.beam_theory import amplifying, section_forces_of
+from symofros.simulation.analysis.beam_theory import amplifying, section_forces_of, turning_of
 
 
 def loads_left_out(run: Examined, signal: Signals) -> Iterator[str]:
@@ -36,4 +36,5 @@ def loads_left_out(run: Examined, signal: Signals) -> Iterator[str]:
                 largest = beam.bending(bent[np.abs(bent).sum(axis=1).argmax()] if len(bent) else straight)
                 # Of the error of the theory there is a note already.
                 judged = replace(largest, beam=f"{name}.{beam.name}", error=0.0)
-                yield from bending_notes([replace(judged, left_out=beam.left_out(straight, *known))])
+                turning = turning_of(model, beam, (*states[:2], u), par)
+                yield from bending_notes([replace(judged, left_out=beam.left_out(straight, *known, turning=turning))])
