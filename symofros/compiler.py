@@ -48,7 +48,7 @@ from symofros.mechanics.topology.beams import (
 )
 from symofros.mechanics.topology.events import tree_with_events
 from symofros.mechanics.topology.numbers import Numbers
-from symofros.mechanics.topology.remarks import rotation_remarks
+from symofros.mechanics.topology.remarks import remarks
 from symofros.mechanics.topology.run_time import RunTimeCheck
 from symofros.mechanics.topology.tree import SpanningTree
 from symofros.runtime.background import BackgroundCompilation
@@ -231,8 +231,8 @@ class Compilation:
     def model(self) -> Model:
         """The functions that the options name, callable; where they name none, each is generated when first called."""
         chosen = self.requests  # A description that can't be a mechanism is refused here, not at the first call.
-        remarks = (text for text in rotation_remarks(self.system) if text not in self.system.notes)
-        for text in (*inconsistencies(self.system), *remarks, *self._held_beams()):
+        noted = (text for text in remarks(self.system) if text not in self.system.notes)
+        for text in (*inconsistencies(self.system), *noted, *self._held_beams()):
             warnings.warn(text, InconsistentModelWarning, stacklevel=3)
         toolchain, on_tape = _choose_toolchain(self.options)
         background = None

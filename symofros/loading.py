@@ -25,7 +25,7 @@ from symofros.mechanics.topology.events import find_problems
 from symofros.mechanics.topology.graph import name_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import has_physical_inertia
-from symofros.mechanics.topology.remarks import rotation_remarks
+from symofros.mechanics.topology.remarks import remarks
 from symofros.mechanics.topology.units import unit_problems
 
 _PATHS = "check the path; a relative one starts at the current folder"
@@ -125,8 +125,8 @@ def _checked(reading: Reading) -> tuple[System, tuple[Source, ...]]:
         raise DescriptionError(in_order([*reading.problems, *problems]))
     system = reading.system
     units = [f"{problem.what}: {problem.found}; {problem.rule}" for problem in unit_problems(system)]
-    remarks = [*units, *rotation_remarks(system)]
-    return replace(system, notes=(*system.notes, *remarks)) if remarks else system, reading.sources
+    noted = [*units, *remarks(system)]
+    return replace(system, notes=(*system.notes, *noted)) if noted else system, reading.sources
 
 
 def applicable(path: Path, arguments: Mapping[str, Any]) -> dict[str, Any]:

@@ -175,7 +175,7 @@ PROCEDURES: Mapping[str, tuple[Procedure, ...]] = {
         machines.resumed,
         exported.packages,
     ),
-    "space_arm": (identities.momenta, by_hand.drifting, by_hand.along),
+    "space_arm": (analyses.identified, identities.momenta, by_hand.drifting, by_hand.along),
     "friction_arm": (lambda scene: analyses.driven(scene, scene.model.names.u),),
     "sleigh": (runs.implicit_steps,),
     "rolling_disc": (

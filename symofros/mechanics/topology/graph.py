@@ -25,9 +25,9 @@ from symofros.mechanics.topology.constraints import (
     same_body_problems,
 )
 from symofros.mechanics.topology.coordinates import coordinate_symbols, rate_symbols, speed_symbols, state_names
+from symofros.mechanics.topology.forces import contact_conditions, element_conditions
 from symofros.mechanics.topology.formulas import formula_problems, power_problems
 from symofros.mechanics.topology.frames import derived_name_problems, frame_remedy, frames_of
-from symofros.mechanics.topology.friction import contact_conditions, friction_conditions
 from symofros.mechanics.topology.joints import joint_number_problems, joint_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import inertia_problems, massless_tip_conditions
@@ -387,5 +387,5 @@ class _Checker:
             where = self.where("body", beam.name)
             sections = list(violations(beam_conditions(beam, where), numbers))
             yield from sections or beam_number_problems(beam, numbers, where)
-        others = (constraint_conditions, switch_conditions, friction_conditions, contact_conditions)
+        others = (constraint_conditions, switch_conditions, element_conditions, contact_conditions)
         yield from violations(chain.from_iterable(of(self.system) for of in others), numbers)

@@ -28,14 +28,37 @@ _ZERO, _HALF = Term(0.0), Term(0.5)
 def inertia_problems(system: System, numbers: Numbers) -> Iterator[Problem]:
     """Bodies whose inertia no distribution of mass can have, unless they waive the check."""
     where = system.origin.get
-    stated = (_body_conditions(body, where(("body", body.name), ""), numbers) for body in system.bodies)
-    return violations(chain.from_iterable(stated), numbers)
+    stated = [_body_conditions(body, where(("body", body.name), ""), numbers) for body in system.bodies]
+    return violations(chain(*stated, rotor_conditions(system)), numbers)
 
 
 def inertia_conditions(system: System) -> Iterator[Condition]:
     """Each body has an inertia that some distribution of mass has, unless it waives the check."""
     for body in system.bodies:
         yield from _body_conditions(body, system.origin.get(("body", body.name), ""))
+
+
+def rotor_conditions(system: System) -> Iterator[Condition]:
+    """No armature, and no inertia of a rotor, is negative, unless the body that they move waives the check."""
+    for body in system.bodies:
+        if body.joint is None or "nonphysical_inertia" in body.waive:
+            continue
+        joint, where = body.joint, system.origin.get(("joint", body.joint.name), "")
+        stated = [("armature", joint.armature), *(("inertia of a rotor", rotor.inertia) for rotor in joint.rotors)]
+        for label, value in stated:
+            if value != 0.0:
+                yield Condition((value,), "not negative", partial(_negative_rotor, joint.name, label, value, where))
+
+
+def _negative_rotor(joint: str, label: str, value: Value, where: str, numbers: Numbers) -> Problem:
+    return Problem(
+        f"joint '{joint}': {label} {numbers.value(value):g}",
+        f"'{value}'",
+        "no inertia is negative: the mass matrix would not be positive definite",
+        f"mend the number, or {_waived('nonphysical_inertia')}",
+        where,
+        Argument("waive", "nonphysical_inertia"),
+    )
 
 
 def has_physical_inertia(body: Body, numbers: Numbers) -> bool:

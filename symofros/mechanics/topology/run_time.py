@@ -25,11 +25,16 @@ from symofros.mechanics.topology.beams import (
 )
 from symofros.mechanics.topology.conditions import Condition, Conditions
 from symofros.mechanics.topology.constraints import constraint_conditions
+from symofros.mechanics.topology.forces import contact_conditions, element_conditions
 from symofros.mechanics.topology.formulas import Stated, stated_values
-from symofros.mechanics.topology.friction import contact_conditions, friction_conditions
 from symofros.mechanics.topology.joints import joint_number_problems
 from symofros.mechanics.topology.numbers import Numbers
-from symofros.mechanics.topology.physics import inertia_conditions, massless_tip_conditions, moment_conditions
+from symofros.mechanics.topology.physics import (
+    inertia_conditions,
+    massless_tip_conditions,
+    moment_conditions,
+    rotor_conditions,
+)
 from symofros.mechanics.topology.switches import switch_conditions
 
 
@@ -79,9 +84,8 @@ class RunTimeCheck:
     def conditions(self) -> Conditions:
         """Conditions that depend on the parameters; they hold at the defaults."""
         system, names = self.system, frozenset(self.names)
-        conditions = [*value_conditions(system), *constraint_conditions(system), *friction_conditions(system)]
-        conditions += contact_conditions(system)
-        conditions += switch_conditions(system)
+        conditions = [*value_conditions(system), *constraint_conditions(system), *element_conditions(system)]
+        conditions += [*contact_conditions(system), *switch_conditions(system), *rotor_conditions(system)]
         for beam in system.beams:
             conditions += beam_conditions(beam, system.origin.get(("body", beam.name), ""))
         conditions += [*inertia_conditions(system), *massless_tip_conditions(system), *moment_conditions(system)]

@@ -16,7 +16,7 @@ from symofros.base.smoothed_sign import smoothed_sign
 ROUNDING = 1e-12
 
 
-def slider(friction: sf.Friction, *parameters: sf.Parameter) -> sf.Model:
+def slider(friction: sf.Friction | sf.Stop, *parameters: sf.Parameter) -> sf.Model:
     joint = sf.Joint("x", "prismatic", axis=(1, 0, 0), elements=(friction,))
     body = sf.RigidBody("block", joint, sf.Inertia(1.0))
     return sf.compile(sf.System("slider", (body,), parameters), sf.Options(backend="interpreter"))
@@ -123,17 +123,32 @@ def test_friction_of_nan_speeds_is_nan() -> None:
         ({"minimum_velocity": 0.0}, ("friction minimum_velocity 0", "above zero")),
         ({"minimum_velocity": -0.1}, ("friction minimum_velocity -0.1", "above zero")),
         ({"static": 2.0, "stribeck_velocity": 0.0}, ("friction stribeck_velocity 0", "above zero")),
+        ({"dynamic": -1.0}, ("friction dynamic -1", "against the motion")),
+        ({"static": -2.0}, ("friction static -2", "against the motion")),
     ],
 )
 def test_numbers_that_make_no_friction_are_refused(entries: dict[str, float], words: tuple[str, ...]) -> None:
     with pytest.raises(sf.DescriptionError) as caught:
-        slider(sf.Friction(1.0, **entries))
+        slider(sf.Friction(**{"dynamic": 1.0} | entries))
     assert all(word in str(caught.value) for word in words), caught.value
     # The same numbers as parameters of a run.
-    names = {"minimum_velocity": "v0", "static": "s", "stribeck_velocity": "w"}
+    names = {"dynamic": "c", "minimum_velocity": "v0", "static": "s", "stribeck_velocity": "w"}
     with pytest.raises(sf.SymofrosError) as refused:
         stated_by_parameters().with_parameters(**{names[key]: value for key, value in entries.items()})
     assert all(word in str(refused.value) for word in words), refused.value
+
+
+@pytest.mark.parametrize(
+    ("entries", "said"),
+    [
+        ({"stiffness": -1.0, "upper": 1.0}, "stop stiffness -1"),
+        ({"stiffness": 1.0, "damping": -2.0, "upper": 1.0}, "stop damping -2"),
+        ({"stiffness": 1.0, "lower": 1.0, "upper": -2.0}, "stop upper less lower -3"),
+    ],
+)
+def test_numbers_that_make_no_stop_are_refused(entries: dict[str, float], said: str) -> None:
+    with pytest.raises(sf.DescriptionError, match=said):
+        slider(sf.Stop(**entries))
 
 
 def test_friction_that_sticks_is_smooth_in_functions_and_of_one_sign_in_its_modes() -> None:

@@ -1,12 +1,16 @@
-"""What run-time parameters may not take away from a joint: a moment of inertia about its axis."""
+"""Inertia that no body can have: stated, and made by run-time parameters."""
 
 from __future__ import annotations
 
+from typing import Any
+
 import numpy as np
+import pytest
 from hypothesis import assume, given, settings
 from hypothesis import strategies as st
 
 import symofros as sf
+from symofros.mechanics.topology import find_problems
 from symofros.mechanics.topology.numbers import Numbers
 from symofros.mechanics.topology.physics import has_physical_inertia
 from symofros.mechanics.topology.run_time import RunTimeCheck
@@ -37,3 +41,18 @@ def test_rods_and_plates_in_any_place_are_physical(seed: int, moments: tuple[flo
         inertia = sf.Inertia(1.0, (0, 0, 0), (J[0, 0], J[1, 1], J[2, 2], J[0, 1], J[0, 2], J[1, 2]))
         body = sf.RigidBody("plate", sf.Joint("q", "revolute"), inertia)
         assert has_physical_inertia(body, Numbers(sf.System("s", [body]))) == (excess == 0.0)
+
+
+@pytest.mark.parametrize("waived", [False, True])
+@pytest.mark.parametrize(
+    ("entries", "said"),
+    [({"armature": "j"}, "armature -0.5"), ({"rotors": [sf.Rotor("j", 3.0)]}, "inertia of a rotor -0.5")],
+)
+def test_negative_inertia_of_rotors_is_refused_unless_waived(entries: dict[str, Any], said: str, waived: bool) -> None:
+    waive = ("nonphysical_inertia",) if waived else ()
+    body = sf.RigidBody("x", sf.Joint("q", "revolute", **entries), sf.Inertia(1.0, moments=(1, 1, 1)), waive=waive)
+    for value in (-0.5, 0.0, 0.5):
+        system = sf.System("s", (body,), parameters=[sf.Parameter("j", 0.5)])
+        stated = sf.System("s", (body,), parameters=[sf.Parameter("j", value)])
+        for problems in (RunTimeCheck(system, ("j",)).problems(np.array([[value]])), find_problems(stated)):
+            assert [said in problem.what for problem in problems] == [True] * (value < 0.0 and not waived)

@@ -91,14 +91,14 @@ def between(scene: Scene) -> Array:
 
 
 def identified(scene: Scene) -> Iterator[Cell]:
-    """The regressor and base parameters of a tree of rigid bodies on which weight alone acts."""
+    """The regressor and base parameters of a tree of rigid bodies: M a + h, without what joints do besides."""
     pi = np.concatenate([_inertial(mover) for mover in assemble(scene.system).movers])
     model, rng = scene.model, np.random.default_rng(SEED)
     n = 8
     q = np.array([model.random_state(rng)[0] for _ in range(n)])
     v, a = rng.standard_normal((2, n, model.nv))
     Y = model.regressor(q, v, a)
-    efforts = model.inverse_dynamics(q, v, a)
+    efforts = np.einsum("...ij,...j->...i", model.mass_matrix(q), a) + model.bias(q, v)
     yield Cell("regressor", off(Y @ pi, efforts), SOLVED)
     terms = model.regressor(q, v, a, joint_terms=("armature", "viscous", "coulomb"))
     diagonals = np.stack([x[:, :, None] * np.eye(model.nv) for x in (a, v, np.sign(v))], axis=2)
