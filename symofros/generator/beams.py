@@ -203,13 +203,21 @@ def _station_law(beam: Beam, values: dict[str, float]) -> StationLaw:
     sizes, axes = np.linalg.eigh(stiffness)
     roots, shares = np.sqrt(np.maximum(sizes, 0.0))[..., np.newaxis], np.sqrt(parts)[:, np.newaxis, np.newaxis]
     across = shares * axes.swapaxes(1, 2)
+    # A strain times the length of its part, by what is weighed: half of its own part is before a station.
+    turns = np.divide(shares * axes, roots.swapaxes(1, 2), out=np.zeros_like(axes), where=roots.swapaxes(1, 2) > 0.0)
+    before = np.tril(np.ones((len(xi), len(xi)))) - 0.5 * np.eye(len(xi))
+    bends = [k for axis, k in order.items() if axis in _BENDS]
+    slopes = np.einsum("s,sr,rbk->sbrk", np.sqrt(parts), before, turns[:, bends])
     return StationLaw(
         np.divide(across @ forces, roots, out=np.zeros_like(forces), where=roots > 0.0),
         roots * (across @ strains),
+        slopes,
         evaluate(beam.damping, values),
     )
 
 
+# Places of the strains that turn the axis, about y and z, among all.
+_BENDS = (1, 2)
 # Number of section forces: N, Vy, Vz, T, My, Mz.
 _FORCES = 6
 

@@ -121,11 +121,14 @@ class StationLaw(NamedTuple):
     Attributes:
         by_forces: Conjugates of the strains by N, Vy, Vz, T, My, Mz (s, k, 6).
         by_strains: The same by each elastic coordinate (s, k, n).
+        slopes: Slopes of the axis at each station in both planes, times the root of that length, by what both are in,
+            as strains from the root on (s, 2, s, k).
         damping: Damping over stiffness [s].
     """
 
     by_forces: Array
     by_strains: Array
+    slopes: Array
     damping: float
 
 

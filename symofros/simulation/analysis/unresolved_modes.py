@@ -68,7 +68,8 @@ def too_high(
 ) -> tuple[Array, Mapping[str, Array]]:
     """Estimated error of each frequency by too few functions (36), relative (k), and the part of each beam in it.
 
-    That is D/(|s|^2 x^H M x) of the modes that oscillate.
+    That is D/(|s|^2 x^H M x) of the modes that oscillate. The error is infinite where more functions may leave no
+    stiffness: near the critical load.
 
     Args:
         model: Model in double precision.
@@ -87,16 +88,19 @@ def too_high(
     largest = np.abs(changes[:nv]).max(axis=0)
     step = _STEP * min(1.0, *(beam.length for beam in beams))
     changes = changes * (step / np.where(largest > 0.0, largest, 1.0))
-    forces = _changes_of_forces(model, state, par, t, modes._replace(s=s, changes=changes))
+    forces, at_state = _forces_inside(model, state, par, t, modes._replace(s=s, changes=changes))
     work = np.abs(s) ** 2 * (changes[:nv].conj() * (modes.M @ changes[:nv])).real.sum(axis=0)
     of = [name for name, _ in model.names.sections]
-    shares: dict[str, Array] = {}
+    shares, released = dict[str, Array](), np.zeros(len(s))
     for beam in beams:
-        first = of.index(beam.name)
-        inside = forces[:, first : first + of.count(beam.name)]
-        mismatch = _mismatch(beam.station_law(), inside, s, changes[beam.in_v])
+        stations = slice(of.index(beam.name), of.index(beam.name) + of.count(beam.name))
+        inside, N = forces[:, stations], at_state[stations, 0]
+        mismatch, compressed = _mismatch(beam.station_law(), inside, N, s, changes[beam.in_v])
         shares[beam.name] = mismatch / np.where(work > 0.0, work, np.inf)
-    errors[chosen] = np.sqrt(1.0 + sum(shares.values())) - 1.0
+        released += compressed / np.where(work > 0.0, work, np.inf)
+    missing, whole = np.asarray(sum(shares.values())), 1.0 + released
+    left = 1.0 - missing * whole / (whole + missing)
+    errors[chosen] = np.where(left > 0.0, 1.0 / np.sqrt(np.where(left > 0.0, left, 1.0)), np.inf) - 1.0
     return errors, shares
 
 
@@ -109,22 +113,25 @@ def resolution_notes(s: Complex, errors: Array, shares: Mapping[str, Array]) -> 
     judged = np.count_nonzero(s[:first].imag > 0.0)
     beam = max(shares, key=lambda name: float(shares[name][judged]))
     percent = 100.0 * errors[first]
+    size = (
+        f" by about {percent:.{0 if percent >= 10.0 else 1}f} %" if np.isfinite(percent) else ", if it has one at all"
+    )
     others = "" if len(bad) == 1 else f", and those of {len(bad) - 1} more, too"
     return (
         f"beam '{beam}' has too few shape functions for mode {first}: its frequency of {abs(s[first]):.4g} rad/s is too"
-        f" high by about {percent:.{0 if percent >= 10.0 else 1}f} %{others}; state more functions, or divide the beam"
+        f" high{size}{others}; state more functions, or divide the beam"
         " into segments",
     )
 
 
-def _changes_of_forces(
+def _forces_inside(
     model: Model, state: tuple[Array, Array, Array, Array], par: ArrayLike | None, t: float, modes: Vibrations
-) -> Complex:
-    """Section forces of small modes at all stations (k, stations, 6), by equilibrium."""
+) -> tuple[Complex, Array]:
+    """Section forces at all stations by equilibrium: of small modes (k, stations, 6), of the state (stations, 6)."""
     (q, v, u, z), nv = state, model.nv
     rows = np.concatenate([modes.changes, modes.changes[nv : 2 * nv] * modes.s])
     both = np.concatenate([rows.real, rows.imag], axis=1).T
-    moved = np.concatenate([both, -both])
+    moved = np.concatenate([both, -both, np.zeros_like(both[:1])])
     qs, vs = model.integrate(q, moved[:, :nv]), v + moved[:, nv : 2 * nv]
     given = {"par": par, "t": t} | ({"z": z + moved[:, 2 * nv : -nv]} if model.nz else {})
     us = np.zeros((len(moved), len(u))) + u
@@ -134,19 +141,27 @@ def _changes_of_forces(
     else:
         a = moved[:, -nv:] + (0.0 if modes.at_rest else model.forward_dynamics(q, v, u, **given))
     forces = model.section_forces(qs, vs, a, us, lam, **given)
-    real, imaginary, back, back_imaginary = forces.reshape(4, -1, *forces.shape[1:])
-    return np.asarray(0.5 * (real - back) + 0.5j * (imaginary - back_imaginary))
+    real, imaginary, back, back_imaginary = forces[:-1].reshape(4, -1, *forces.shape[1:])
+    return np.asarray(0.5 * (real - back) + 0.5j * (imaginary - back_imaginary)), np.asarray(forces[-1])
 
 
-def _mismatch(law: StationLaw, forces: Complex, s: Complex, coordinates: Complex) -> Array:
-    """Integral of |M - EI kappa|^2/EI of each mode (k), over all strains with functions (34).
+def _mismatch(law: StationLaw, forces: Complex, N: Array, s: Complex, coordinates: Complex) -> tuple[Array, Array]:
+    """D of each mode (34b), over all strains with functions, and what compression takes of its energy (k each).
 
     Args:
         law: The beam's elastic law at its stations.
         forces: Section forces by equilibrium (k, stations, 6).
+        N: Axial force of the state (stations).
         s: Eigenvalues (k) [1/s].
         coordinates: Elastic coordinates (n, k).
     """
-    by_strains = (law.by_strains @ coordinates) * (1.0 + law.damping * s)
-    left = law.by_forces @ np.moveaxis(forces, 0, -1) - by_strains
-    return np.asarray((left.real**2 + left.imag**2).sum(axis=(0, 1)))
+    strains = law.by_strains @ coordinates
+    left = law.by_forces @ np.moveaxis(forces, 0, -1) - strains * (1.0 + law.damping * s)
+    flat = left.reshape(-1, len(s))
+    slopes = law.slopes.reshape(-1, len(flat))
+    pull = np.repeat(np.maximum(N, 0.0), len(slopes) // len(N))
+    stretched = np.eye(len(flat)) + slopes.T @ (pull[:, np.newaxis] * slopes)
+    mismatch = (flat.conj() * np.linalg.solve(stretched, flat)).real.sum(axis=0)
+    turned = np.abs(slopes @ strains.reshape(flat.shape)) ** 2
+    push = np.repeat(np.maximum(-N, 0.0), len(slopes) // len(N))
+    return mismatch, push @ turned
