@@ -25,7 +25,7 @@ _ANGLES = {"rpy": slice(0, 3), "axis_angle": slice(3, 4)}
 # What the linear and the higher coefficients of a force along a coordinate are, and what negative ones do.
 _STIFFNESS = "stiffness", "pushes away from rest"
 _DAMPING = "damping", "gives energy"
-_COEFFICIENTS = {
+_COEFFICIENTS: dict[type, tuple[tuple[str, str], str, str | None]] = {
     Spring: (_STIFFNESS, "stiffness", "cubic"),
     Damper: (_DAMPING, "coefficient", "quadratic"),
     Friction: (_DAMPING, "viscous", None),
