@@ -17,6 +17,7 @@ double *SYM_JS(js_array)(sym_program_instance *instance, int32_t what) {
     double *const arrays[] = {instance->inputs, instance->signals, instance->par};
     return arrays[what];
 }
+void SYM_JS(js_set)(sym_program_instance *instance, int32_t i, double value) { sym_program_set(instance, i, value); }
 double SYM_JS(js_present)(const sym_program_instance *instance, int32_t i) { return sym_program_present(instance, i); }
 double SYM_JS(js_time)(const sym_program_instance *instance) { return *instance->diagram.t; }
 const char *SYM_JS(js_refused)(const sym_program_instance *instance) { return sym_program_refused(instance); }

@@ -66,14 +66,15 @@ export class Instance {
     return place.what === PARAMETERS ? value.map((_, i) => this.program.wasm.js_present(this.at, place.at + i)) : value;
   }
 
-  /** Set an input, which holds until it is set anew, or a parameter, which counts from `prepare()` or `start()` on: a number
-   *  for all entries, or one number each. */
+  /** Set an input, which holds until it is set anew, or a parameter, which counts from `prepare()` or `start()` on, also
+   *  where actions of events have changed it: a number for all entries, or one number each. */
   set(name, value) {
-    const place = this.program.find(name, 0, PARAMETERS), view = this.#view(place);
+    const place = this.program.find(name, 0, PARAMETERS);
     const numbers = typeof value === "number" ? Array(place.width).fill(value) : Array.from(value);
     if (numbers.length !== place.width || !numbers.every(Number.isFinite))
       throw new RangeError(`'${name}' takes ${place.width} finite numbers; it was given ${numbers.join(", ") || "none"}`);
-    view.set(numbers);
+    if (place.what !== PARAMETERS) this.#view(place).set(numbers);
+    else numbers.forEach((x, i) => this.program.wasm.js_set(this.at, place.at + i, x));
   }
 
   /** Begin at t = 0 with the present parameters and inputs. */

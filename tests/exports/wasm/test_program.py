@@ -59,6 +59,11 @@ const it = (await load()).instance(), shut = [];
 shut.push(it.get("m.shut")[0]);
 it.advance(0.5);
 shut.push(it.get("m.shut")[0]);
+it.set("m.shut", 1);
+it.prepare();
+shut.push(it.get("m.shut")[0]);
+it.set("m.shut", 0);
+it.set("m.shut", 1);
 it.start();
 shut.push(it.get("m.shut")[0]);
 console.log(JSON.stringify(shut));
@@ -88,11 +93,11 @@ def test_a_module_has_the_bits_of_the_program(case: str, tmp_path: Path) -> None
 
 @pytest.mark.tools
 def test_parameters_are_what_actions_have_set(tmp_path: Path) -> None:
-    """A latch that breaks: it was said to be shut, as it was at the start."""
+    """A latch that breaks: it was said to be shut, as it was at the start; set again, it stayed broken."""
     need("node")
     folder = sf.export(switching(SWITCHING["latch"]), "wasm", tmp_path / "wasm", name="latch", dt=1e-3).folder
     (folder / "ask.mjs").write_text(_ASK)
-    assert json.loads(run("node", "ask.mjs", cwd=folder)) == [1, 0, 1]
+    assert json.loads(run("node", "ask.mjs", cwd=folder)) == [1, 0, 1, 1]
 
 
 @pytest.mark.tools
