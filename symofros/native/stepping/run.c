@@ -158,16 +158,14 @@ static int32_t sym_ball_meets(const sym_run *r, int32_t i) {
 
 /* Whether actions are done at the events at which the step has been cut, and whether bodies strike there: speeds are set. */
 static int32_t sym_acts_at_cut(const sym_run *r, int32_t *strikes) {
-    int32_t acts = 0, i;
+    int32_t acts = 0;
     int64_t row;
     *strikes = 0;
     if (r->actions == NULL) return 0;
     for (row = r->n_event_records - 1; row >= r->first_met && r->event_t[row] >= r->event_t[r->n_event_records - 1]; --row) {
         const int32_t which = r->event_index[row];
         acts |= r->actions->acts[which] != 0;
-        *strikes |= r->actions->restitution[which] >= 0.0 || sym_ball_meets(r, which);
-        for (i = 0; i < r->actions->n_assignments; ++i)
-            *strikes |= r->actions->assignments[i].event == which && r->actions->assignments[i].is_speed;
+        *strikes |= sym_sets_speeds(r, which) || sym_ball_meets(r, which);
     }
     return acts;
 }

@@ -8,6 +8,7 @@ import numpy as np
 import pytest
 
 import symofros as sf
+import symofros.blocks as blocks
 from symofros.base.functions import FUNCTIONS
 from symofros.description.yaml.yaml_writer import write_yaml
 from symofros.simulation.analysis.kinematics.facing import facings
@@ -199,27 +200,126 @@ def test_bodies_that_a_strike_leaves_at_rest_on_each_other(pull: float, method: 
         assert "need a constraint that engages" in run.outcome.advice
 
 
+BY_CONSTRAINT: dict[str, Any] = {"action": {"contact": 1}, "restitution": 0.5}
+REBOUNDS: dict[str, dict[str, Any]] = {
+    "speed": {"action": {"dz": "-0.5*dz"}},
+    "restitution": BY_CONSTRAINT,
+    "rests": {**BY_CONSTRAINT, "rests": "lam.floor.z"},
+    "engages": {"action": {"contact": 1}},
+}
+
+
+def bouncing_system(height: float = 0.0) -> sf.System:
+    """A ball, and a floor of that height below it that an action may engage."""
+    foot = sf.Frame("foot", (0, 0, -height))
+    z = sf.Joint("z", "prismatic", axis=(0, 0, 1), actuated=True)
+    ball = sf.RigidBody("ball", z, sf.Inertia(1.0), frames=[foot])
+    floor, switched = sf.Closure("floor", ("world", None), ("ball", "foot"), ("z",)), sf.Switch("floor", "contact")
+    parameters = (sf.Parameter("contact", 0.0),)
+    return sf.System("bounces", (ball,), parameters, constraints=(floor,), switches=(switched,))
+
+
+def bouncing(height: float = 0.0) -> sf.Model:
+    """The model of it."""
+    return sf.compile(bouncing_system(height))
+
+
 @pytest.mark.parametrize("method", ["dopri5", "semi_implicit_euler"])
 @pytest.mark.parametrize("stated", ["speed", "restitution", "rests"])
 def test_a_body_does_not_pass_what_it_bounces_on(stated: str, method: str) -> None:
     """Flights that are lower than the rounding of a floor's height end in rest, or in words (simulation.md, (4e))."""
-    foot = sf.Frame("foot", (0, 0, -1.3))
-    ball = sf.RigidBody("ball", sf.Joint("z", "prismatic", axis=(0, 0, 1)), sf.Inertia(1.0), frames=[foot])
-    floor, switched = sf.Closure("floor", ("world", None), ("ball", "foot"), ("z",)), sf.Switch("floor", "contact")
-    system = sf.System("bounces", (ball,), (sf.Parameter("contact", 0.0),), constraints=(floor,), switches=(switched,))
-    by_constraint: dict[str, Any] = {"action": {"contact": 1}, "restitution": 0.5}
-    how: dict[str, Any] = {
-        "speed": {"action": {"dz": "-0.5*dz"}},
-        "restitution": by_constraint,
-        "rests": {**by_constraint, "rests": "lam.floor.z"},
-    }
-    strike = {"strike": sf.Event("z - 1.3", "falling", **how[stated])}
-    run = sf.simulate(sf.compile(system), [1.35], t_end=0.5, events=strike, method=method, dt=5e-3)
+    strike = {"strike": sf.Event("z - 1.3", "falling", **REBOUNDS[stated])}
+    run = sf.simulate(bouncing(1.3), [1.35], t_end=0.5, events=strike, method=method, dt=5e-3)
     assert run.q.min() > 1.3 - 1e-12 and len(run.events) > 5
     if stated == "rests":
         assert run.outcome.kind == "finished" and run.lam[-1] == pytest.approx([9.81], abs=1e-9)
     else:
         assert run.outcome.kind == "interrupted" and "Contact with restitution" in run.outcome.advice
+
+
+@pytest.mark.parametrize("method", ["dopri5", "rk4", "semi_implicit_euler"])
+@pytest.mark.parametrize("stated", REBOUNDS)
+def test_a_body_that_begins_on_what_it_strikes_does_not_pass_it(stated: str, method: str) -> None:
+    """At rest it stays, or the run ends in words; moving into it, it bounces at the start (simulation.md, (4f))."""
+    model, strike = bouncing(), {"strike": sf.Event("z", "falling", **REBOUNDS[stated])}
+    for z, speed in ((0.0, 0.0), (-5e-17, 0.0), (0.0, -1.0), (-5e-17, 1.0)):
+        run = sf.simulate(model, [z], [speed], t_end=0.1, events=strike, method=method, dt=5e-3)
+        assert run.q.min() > -1e-12, (z, speed, run.outcome)
+        if speed <= 0.0:
+            found = run.events[0]
+            assert found.t == 0.0 and (found.v_after == pytest.approx([0.0 if stated == "engages" else -0.5 * speed]))
+        if speed == 0.0:
+            stays = stated in ("rests", "engages")
+            assert run.outcome.kind == ("finished" if stays else "interrupted"), run.outcome
+        if speed < 0.0 and stated != "engages":
+            assert run.q.max() == pytest.approx(0.5**2 / 2 / 9.81, rel=0.15)
+
+
+def test_all_executors_strike_where_a_run_begins() -> None:
+    """Batches, steppers, diagrams as single runs; a terminal event that sets parameters only waits for its return."""
+    model, strike = bouncing(), {"strike": sf.Event("z", "falling", **REBOUNDS["rests"])}
+    starts = np.array([[0.0], [0.0], [0.05]]), np.array([[0.0], [-1.0], [0.0]])
+    many = sf.simulate_batch(model, *starts, t_end=0.1, events=strike, method="rk4", dt=5e-3)
+    steppers, stepper = sf.Steppers(model, 2, dt=5e-3, events=strike), sf.Stepper(model, dt=5e-3, events=strike)
+    steppers.reset(starts[0][:2], starts[1][:2])
+    for _ in range(20):
+        steppers.step()
+    for i in range(3):
+        run = sf.simulate(model, starts[0][i], starts[1][i], t_end=0.1, events=strike, method="rk4", dt=5e-3)
+        assert many.q[i, -1] == pytest.approx(run.q[-1], abs=1e-14) and len(many.events(i)) == len(run.events)
+        stepper.reset(starts[0][i], starts[1][i])
+        while stepper.t < 0.1 - 1e-9 and stepper.step():
+            pass
+        assert stepper.q == pytest.approx(run.q[-1], abs=1e-14) and len(stepper.events) == len(run.events)
+        assert i == 2 or steppers.q[i] == pytest.approx(run.q[-1], abs=1e-14)
+    d = sf.Diagram("begins")
+    d.add_model("m", bouncing_system(), {"z": 0.0})
+    d.add(blocks.Constant(name="none", value=[0.0]))
+    d.add(blocks.ForwardDynamics(name="plant", model="m", events=strike), u="none.y")
+    result = sf.Simulation(d).run(0.1, dt=5e-3)
+    assert [found.t for found in result.events["plant"]] == [0.0, 0.0]
+    again = {"again": sf.Event("z", "falling", terminal=True, action={"contact": 1})}
+    assert not sf.simulate(model, [0.0], [-1.0], t_end=0.1, events=again).events
+
+
+@pytest.mark.parametrize("method", ["dopri5", "rk4"])
+def test_a_body_that_is_held_on_what_it_strikes_does_not_pass_it_afterwards(method: str) -> None:
+    """A pull that holds it on the floor from the start ceases at 0.04 s, within a step."""
+    held = {"u": {"z": "9.81 - 1e3*max(t - 0.04, 0)"}, "events": {"s": sf.Event("z", "falling", **REBOUNDS["rests"])}}
+    run = sf.simulate(bouncing(), [0.0], t_end=0.1, method=method, dt=7e-3, **held)
+    assert run.outcome.kind == "finished" and run.q.min() > -1e-7
+    assert run.events[0].t == pytest.approx(0.04, abs=7e-3 if method == "rk4" else 1e-3)
+    assert run.lam[-1] == pytest.approx([1e3 * 0.06], rel=1e-6)
+
+
+@pytest.mark.parametrize(
+    ("method", "width", "rate", "e", "height", "above", "t0"),
+    [
+        ("rodas4", 0.003980874859939525, 2.307418160949495, 0.2623777658099434, 1.3, -0.003926648408239197, 100.0),
+        ("rk4", 0.00047948339004307515, 3.8076531902234247, 0.3681564860228195, 1.3, 0.014970006672508473, 0.0),
+        ("rodas4", 0.010472048797389525, 4.334311699414888, 0.8787450002503915, 1.3, 0.0, 0.0),
+        ("dop853", 0.0008341043160693933, 49.6289161270184, 0.5889012338133048, -20.0, -2.9454997150679674e-05, 100.0),
+    ],
+)
+def test_a_body_does_not_pass_a_wall_that_moves(
+    method: str, width: float, rate: float, e: float, height: float, above: float, t0: float
+) -> None:
+    """Flights above it may be lower than the rounding of its height, of time, or of what is left of a step."""
+    names = ("width", "rate", "e", "height")
+    ball = sf.RigidBody("ball", sf.Joint("z", "prismatic", axis=(0, 0, 1)), sf.Inertia(1.0))
+    model = sf.compile(sf.System("wall", (ball,), [sf.Parameter(name, 1.0) for name in names]))
+    wall, speed = "(height + width*sin(rate*t))", "width*rate*cos(rate*t)"
+    strike = {"strike": sf.Event(f"z - {wall}", "falling", action={"dz": f"{speed} - e*(dz - {speed})"})}
+    par = dict(zip(names, (width, rate, e, height), strict=True))
+    given: dict[str, Any] = {"par": par, "t0": t0, "t_end": t0 + 1.0}
+    if method == "rk4":
+        given["dt"] = 0.0018664026910429172
+    if method == "dop853":
+        given["rtol"] = 2.0674675668546215e-10
+    run = sf.simulate(model, [height + above], events=strike, method=method, **given)
+    gap = run.q[:, 0] - height - width * np.sin(rate * run.t)
+    assert gap.min() > -1e-9, (gap.min(), run.outcome)
+    assert run.outcome.kind == "finished" or "Contact with restitution" in run.outcome.advice
 
 
 @pytest.mark.parametrize("method", ["dopri5", "rk4"])

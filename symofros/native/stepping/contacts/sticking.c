@@ -67,7 +67,7 @@ SYM_EXPORT double sym_run_accumulation(const sym_run *r, double t, double e) {
 /* Note when a motion begins, parts of which may be runs of their own. */
 static void sym_note_begin(const sym_run *r) {
     double *begun = r->acted_at + r->system->n_events;
-    if (!(r->actions->at_once > 0.0) && *begun == -HUGE_VAL) *begun = r->t;
+    if (*begun == -HUGE_VAL) *begun = r->t;
 }
 
 /* Count that a mode ends once more: acted_at runs ahead of time by a share of what counts as an instant each time. Returns 0

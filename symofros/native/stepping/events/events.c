@@ -45,6 +45,14 @@ static void sym_record_event(sym_run *r, int32_t which) {
     memcpy(r->event_v + row * s->nv, s->v, (size_t)s->nv * sizeof(double));
 }
 
+/* Whether event i has been found at the evaluation point. */
+static int32_t sym_is_recorded(const sym_run *r, int32_t i) {
+    int64_t row = r->n_event_records;
+    while (row > r->first_met && r->event_t[row - 1] >= *r->system->t)
+        if (r->event_index[--row] == i) return 1;
+    return 0;
+}
+
 /* Record the events that are met where the step is cut, at the evaluation point, and were not found there by rounding: the
  * next step begins behind them. Returns 0 or a status. */
 static int32_t sym_record_events_at_cut(sym_run *r, sym_event_search *search, double x) {
@@ -53,7 +61,7 @@ static int32_t sym_record_events_at_cut(sym_run *r, sym_event_search *search, do
     int32_t i, status = sym_event_values(r, values);
     if (status != 0) return status;
     for (i = 0; i < s->n_events; ++i)
-        if (sym_event_is_met(search, i, x, values[i])) sym_record_event(r, i);
+        if (!sym_is_recorded(r, i) && sym_event_is_met(search, i, x, values[i])) sym_record_event(r, i);
     return 0;
 }
 
@@ -103,7 +111,7 @@ static int32_t sym_add_errors_of_events(sym_event_step *step, double x, double r
     if (status != 0) return status;
     sym_state_magnitudes(r, w->magnitude);
     for (l = 0; l < 2 * r->system->nv; ++l) w->stage[l] += (l / length % 2 == (signs_length > 0) ? -1.0 : 1.0) * (atol + rtol * w->magnitude[l]);
-    sym_load_chart_state(r, r->t + x * step->h, w->stage);
+    sym_load_chart_state(r, (r->t + x * step->h) * (1.0 + (signs_length > 0 ? DBL_EPSILON : -DBL_EPSILON)), w->stage);
     status = sym_event_values(r, moved);
     for (l = 0; l < r->system->n_events; ++l) errors[l] += fabs(moved[l] - values[l]);
     return status;
@@ -129,9 +137,20 @@ static int sym_settled_now(const sym_run *r, int32_t i) {
     return r->system->n_contacts > 0 && i >= sym_first_contact_event(r) && r->acted_at[i] >= r->t;
 }
 
-/* Whether event i is zero where the step begins, as its bodies touch there since an impact or the choice of modes. */
+/* Whether the action of an event sets speeds, or lets constraints strike: nothing then goes on through its zero. */
+static int32_t sym_sets_speeds(const sym_run *r, int32_t which) {
+    const sym_actions *a = r->actions;
+    int32_t i, sets = a->restitution[which] >= 0.0;
+    for (i = 0; i < a->n_assignments; ++i) sets |= a->assignments[i].event == which && a->assignments[i].is_speed;
+    return sets;
+}
+
+/* Whether the contact opens where the step begins that comes to rest by event i. */
+static int sym_opens_now(const sym_run *r, int32_t i) { return r->actions->opens[i] >= 0 && r->acted_at[r->actions->opens[i]] == r->t; }
+
+/* Whether event i is zero where the step begins, as its bodies touch there since an impact, an opening or the choice of modes. */
 static int sym_begins_at_zero(const sym_run *r, int32_t i) {
-    return r->actions != NULL && (sym_settled_now(r, i) || (r->actions->restitution[i] == 0.0 && r->acted_at[i] == r->t));
+    return r->actions != NULL && (sym_settled_now(r, i) || sym_opens_now(r, i) || (r->acted_at[i] == r->t && sym_sets_speeds(r, i)));
 }
 
 /* Changes that are rounding, of events that are zero where the step begins, for the search: near to zero they have no digits, so
@@ -181,9 +200,8 @@ static int32_t sym_event_is_rounding(sym_event_step *step, int32_t i, double x, 
 
 /* Whether the step begins as bodies leave a contact that can come to rest, near to which they turn then. */
 static int sym_leaves_contact(const sym_run *r, int32_t i) {
-    const int32_t opens = r->actions == NULL ? -1 : r->actions->opens[i];
-    if (r->actions != NULL && sym_settled_now(r, i)) return 1;
-    return opens >= 0 && (r->acted_at[i] == r->t || r->acted_at[opens] == r->t);
+    if (r->actions == NULL) return 0;
+    return sym_settled_now(r, i) || sym_opens_now(r, i) || (r->actions->opens[i] >= 0 && r->acted_at[i] == r->t);
 }
 
 /* Whether event i is of a rim or segment that lies along its surface: other contacts carry it, near to zero. */
@@ -223,54 +241,93 @@ static double sym_way_of_step(const sym_run *r, const sym_workspace *w, double h
     return largest;
 }
 
-/* Way of a coordinate along which the rate of an event is taken [rad or m]. */
-#define SYM_EVENT_RATE_WAY 1e-5
+/* Shares of a step: two points nearer than the first are not told apart; what stays up to the second has been at rest there. */
+#define SYM_EVENT_SOON 1e-9
+#define SYM_EVENT_STAYS 1e-3
+/* By how much what moves off grows in twice the time: between those of t and of t^2. */
+#define SYM_EVENT_FROM_REST 3.0
 
-/* Rate of event i where the step begins, along its first slope, by central differences of order four: beside the speed of what it
- * strikes that of a bounce is small. Returns 0 or a status. */
-static int32_t sym_event_rate(sym_event_step *step, int32_t i, double *rate) {
-    sym_run *r = step->run;
-    sym_workspace *w = step->memory;
-    const int32_t nv = r->system->nv;
-    double *values = r->event_values + (SYM_EVENT_ROWS - 1) * r->system->n_events, fastest = 0.0, moment;
-    int32_t l, way, status = 0;
-    for (l = 0; l < nv; ++l) fastest = fmax(fastest, fabs(r->v[l]));
-    moment = fastest * step->h > SYM_EVENT_RATE_WAY ? SYM_EVENT_RATE_WAY / fastest : step->h;
-    for (way = -2, *rate = 0.0; way <= 2 && status == 0; ++way) {
-        const double ahead = 0.5 * way * moment, weight = way % 2 == 0 ? -0.5 * way : 8.0 * way;
-        for (l = 0; l < nv; ++l) w->stage[l] = ahead * r->v[l], w->stage[nv + l] = r->v[l] + ahead * w->k[nv + l];
-        sym_load_chart_state(r, r->t + ahead, w->stage);
-        status = sym_event_values(r, values);
-        *rate += weight * values[i];
+typedef struct sym_departure { /* how an event leaves the value that it has where a step begins */
+    int32_t way, from_rest; /* 1 rising, -1 falling, 0 not at all; whether it does so faster than in proportion to time */
+    double stays, seen;     /* up to where it stays, and from where on it has left by more than rounding */
+} sym_departure;
+
+/* Whether event i is at x of the step elsewhere than at its begin, by more than rounding, and how far. Returns 0 or a status. */
+static int32_t sym_has_left(sym_event_step *step, int32_t i, double begin, double x, int32_t *left, double *change) {
+    const int32_t n = step->run->system->n_events;
+    const double *values = step->run->event_values + (SYM_EVENT_ROWS - 2) * n, *errors = step->run->event_values + (SYM_EVENT_ROWS - 3) * n;
+    const int32_t status = sym_event_is_at_zero(step, i, x, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, left);
+    *change = values[i] - begin, *left = fabs(*change) > errors[i];
+    return status;
+}
+
+/* How event i leaves the value that it has where the step begins, up to x. Returns 0 or a status. */
+static int32_t sym_find_departure(sym_event_step *step, int32_t i, double x, sym_departure *found) {
+    double *values = step->run->event_values + (SYM_EVENT_ROWS - 2) * step->run->system->n_events, begin, change = 0.0, nearest = 0.0;
+    int32_t left = 0, status = sym_event_values_within_step(step, 0.0, values);
+    begin = values[i];
+    for (found->seen = x; status == 0; x *= 0.5) {
+        status = sym_has_left(step, i, begin, x, &left, &change);
+        if (!left || x <= SYM_EVENT_SOON) break;
+        nearest = change, found->seen = x;
+    }
+    found->way = (nearest > 0.0) - (nearest < 0.0), found->stays = 0.0;
+    found->from_rest = nearest * change < 0.0 || fabs(nearest) > SYM_EVENT_FROM_REST * fabs(change);
+    if (left || found->way == 0 || x < SYM_EVENT_STAYS) return status;
+    for (found->stays = x; found->seen - found->stays > SYM_EVENT_SOON && status == 0;) {
+        x = 0.5 * (found->stays + found->seen);
+        status = sym_has_left(step, i, begin, x, &left, &change);
+        *(left ? &found->seen : &found->stays) = x;
     }
     return status;
 }
 
-/* An event that has acted where the step begins, is at zero there and moves away from it, but is on the other side at x, though it has
- * not been found on its way back: *lost, which has passed zero again within the rounding of its begin, (4e); -1: there is none. Returns
- * 0 or a status. */
-static int32_t sym_find_lost_event(sym_event_step *step, double x, int32_t *lost) {
+/* Whether event i, which acts, may pass zero unseen as it is there where the step begins, (4e): it has acted there, its contact has
+ * opened there, or the run begins there; bodies that strike may have been held there since. */
+static int32_t sym_may_pass_unseen(const sym_run *r, int32_t i, double begin) {
+    const sym_actions *a = r->actions;
+    const int32_t direction = r->system->event_direction[i], strikes = sym_sets_speeds(r, i);
+    if (!a->acts[i] || direction == 0 || r->system->event_terminal[i] == -1) return 0;
+    if (r->acted_at[i] == r->t) return strikes;
+    if (direction * begin < 0.0) return 0; /* on this side: the search finds it */
+    if (sym_opens_now(r, i)) return 1;
+    return r->acted_at[i] == -HUGE_VAL && (strikes || (r->acted_at[r->system->n_events] == r->t && r->system->event_terminal[i] != 1));
+}
+
+/* The first event whose action is missed, since it is at zero where the step begins and passes it from there: *lost, -1: there is none.
+ * One that has acted there does so if it sets off from rest; one that has is left to pass by itself. *at: where it acts. Returns 0 or
+ * a status. */
+static int32_t sym_find_lost_event(sym_event_step *step, double x, int32_t *lost, double *at) {
     const sym_run *r = step->run;
-    const sym_system *s = r->system;
-    double *values = r->event_values + (SYM_EVENT_ROWS - 1) * s->n_events;
-    int32_t i, at_zero, status = 0;
+    int32_t i, status = 0, at_zero;
     int64_t row;
-    for (i = 0, *lost = -1; r->actions != NULL && i < r->actions->first_mode && *lost < 0; ++i) {
-        double begin, end, rate;
-        if (r->acted_at[i] != r->t || !r->actions->acts[i] || s->event_terminal[i] == -1) continue;
+    for (i = 0, *lost = -1; r->actions != NULL && i < r->actions->first_mode && *lost < 0 && status == 0; ++i) {
+        const double begin = r->event_values[i];
+        sym_departure leaves;
+        if (!sym_may_pass_unseen(r, i, begin)) continue;
+        status = sym_event_is_at_zero(step, i, 0.0, SYM_EVENT_RTOL, SYM_EVENT_ATOL, &at_zero);
+        if (status != 0 || !at_zero) continue;
+        status = sym_find_departure(step, i, x, &leaves);
+        if (status != 0 || leaves.way * r->system->event_direction[i] <= 0 || (r->acted_at[i] == r->t && !leaves.from_rest)) continue;
         for (row = r->first_met; row < r->n_event_records && r->event_index[row] != i;) ++row;
-        if (row < r->n_event_records) continue; /* found, as near to zero as the rounding of t and of its formula allows */
-        status = sym_event_values_within_step(step, x, values), end = values[i];
-        if (status == 0) status = sym_event_values_within_step(step, 0.0, values), begin = values[i];
-        if (status != 0) return status;
-        if (s->event_direction[i] * end < 0.0 || fabs(begin) > fabs(end)) continue;
-        status = sym_event_rate(step, i, &rate);
-        if (status == 0 && rate * end < 0.0) status = sym_event_is_at_zero(step, i, 0.0, SYM_EVENT_RTOL, SYM_EVENT_ATOL, &at_zero);
-        else at_zero = 0;
-        if (status == 0 && at_zero) status = sym_event_is_at_zero(step, i, x, SYM_EVENT_STATE_ROUNDING, SYM_EVENT_STATE_ROUNDING, &at_zero), at_zero = !at_zero;
-        if (status != 0) return status;
-        if (at_zero) *lost = i;
+        if (row < r->n_event_records && r->event_t[row] <= r->t + leaves.seen * step->h) continue; /* found beside the begin */
+        *lost = i, *at = r->acted_at[i] == r->t ? 0.0 : leaves.stays;
     }
+    return status;
+}
+
+/* An event that acts at x of the step has been missed: what has been found behind it is given up. Returns 0 or a status. */
+static int32_t sym_go_back_to_lost_event(sym_event_step *step, int32_t lost, double x) {
+    sym_run *r = step->run;
+    int32_t status;
+    while (r->n_event_records > r->first_met && r->event_t[r->n_event_records - 1] >= r->t + x * step->h) {
+        int32_t *found = r->system->event_terminal + r->event_index[--r->n_event_records];
+        if (*found == -1) *found = -2;
+    }
+    r->terminal_event = lost;
+    if (x == 0.0) sym_load_start(r);
+    status = x == 0.0 ? 0 : sym_load_state_within_step(r, step->memory, step->h, step->dense_ready, x);
+    if (status == 0) sym_record_event(r, lost);
     return status;
 }
 
@@ -281,7 +338,7 @@ static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *
     sym_system *s = r->system;
     sym_event_step step = {r, w, h, dense_ready};
     sym_event_search search;
-    double last_x = 2.0;
+    double last_x = 2.0, lost_x = 0.0;
     int32_t status, lost = -1;
     *stop_x = 2.0, r->terminal_event = -1, r->first_met = r->n_event_records;
     search.n = s->n_events, search.direction = s->event_direction, search.memory = r->event_values;
@@ -311,19 +368,10 @@ static int32_t sym_find_events(sym_run *r, sym_workspace *w, double h, int32_t *
         status = sym_load_state_within_step(r, w, h, dense_ready, x);
         if (status == 0) sym_record_event(r, which);
     }
-    if (status == 0) status = sym_find_lost_event(&step, fmin(*stop_x, 1.0), &lost);
+    if (status == 0) status = sym_find_lost_event(&step, fmin(*stop_x, 1.0), &lost, &lost_x);
     if (status == 0 && lost < 0) status = sym_keep_event_notes(&step, &search);
     if (status != 0) return status;
-    if (lost >= 0) { /* it acts where it has acted: what the step has found lies behind */
-        while (r->n_event_records > r->first_met) {
-            int32_t *found = s->event_terminal + r->event_index[--r->n_event_records];
-            if (*found == -1) *found = -2;
-        }
-        r->terminal_event = lost, *stop_x = 0.0;
-        sym_load_start(r);
-        sym_record_event(r, lost);
-        return 0;
-    }
+    if (lost >= 0) return *stop_x = lost_x, sym_go_back_to_lost_event(&step, lost, lost_x);
     if (*stop_x > 1.0) {
         memcpy(r->event_values, r->event_values + (SYM_EVENT_NODES - 1) * s->n_events, (size_t)s->n_events * sizeof(double));
         return 0;
