@@ -1,13 +1,11 @@
-"""Connectors, loads and laws of friction, by powers, by energies and by what textbooks have."""
+"""Laws of friction and steps where their parts meet; connectors and loads are asked of Exudyn in `test_asked.py`."""
 
 from __future__ import annotations
 
 from dataclasses import replace
 
 import numpy as np
-import pytest
 from numpy.typing import NDArray
-from scipy.spatial.transform import Rotation
 
 from validation.engines.functions import FUNCTIONS
 from validation.engines.interface import Slot, State
@@ -26,69 +24,6 @@ _STATE = random_state(_TREE, _LAYOUT, 3)
 
 def _of(name: str, state: State = _STATE) -> NDArray[np.float64]:
     return digits(Truth(_TREE, _LAYOUT).value(FUNCTIONS[name].truth, Point.of(state)))
-
-
-def _rotation(q: NDArray[np.float64]) -> Rotation:
-    return Rotation.from_quat([*q[1:], q[0]])
-
-
-def _points(state: State) -> tuple[NDArray[np.float64], NDArray[np.float64]]:
-    first = state.a + _rotation(state.q).apply(connectors.FIRST)
-    return first, state.tau + connectors.BEYOND + _rotation(state.q2).apply(connectors.SECOND)
-
-
-def _energy(name: str, state: State) -> float:
-    first, second = _points(state)
-    apart = second - first
-    length = np.linalg.norm(apart)
-    if name == "connector_spring":
-        rest = connectors.REST - connectors.FORCE / connectors.STIFFNESS
-        return float(connectors.STIFFNESS / 2 * (length - rest) ** 2)
-    if name == "connector_gravity":
-        return float(-connectors.PULL * np.prod(connectors.MASSES) / length)
-    return float(np.array(connectors.ALONG) @ (apart - connectors.OFFSET) ** 2 / 2)
-
-
-@pytest.mark.parametrize("name", ["connector_spring", "connector_along_axes", "connector_gravity"])
-def test_forces_at_rest_are_slopes_of_an_energy(name: str) -> None:
-    still = replace(_STATE, v=0 * _STATE.v, v2=0 * _STATE.v2)
-    step, found = 1e-6, _of(name, replace(still, tau=0 * still.tau))
-
-    def moved(k: int, by: float) -> State:
-        unit = by * np.eye(3)[k % 3]
-        turned = Rotation.from_rotvec(unit)
-        q, q2 = (np.roll((_rotation(one) * turned).as_quat(), 1) for one in (still.q, still.q2))
-        place = replace(still, tau=0 * still.tau)
-        parts = ({"a": still.a + unit}, {"q": q}, {"tau": unit}, {"q2": q2})
-        return replace(place, **parts[k // 3])  # type: ignore[arg-type]
-
-    slopes = [(_energy(name, moved(k, step)) - _energy(name, moved(k, -step))) / (2 * step) for k in range(12)]
-    np.testing.assert_allclose(found, np.negative(slopes), atol=1e-7)
-
-
-@pytest.mark.parametrize("name", ["connector_spring", "connector_along_axes"])
-def test_dampers_take_power(name: str) -> None:
-    speeds = np.concatenate([_STATE.v, _STATE.tau, _STATE.v2, _STATE.v])
-    still = replace(_STATE, v=0 * _STATE.v, v2=0 * _STATE.v2)
-    # tau places the second body, too: the first turns at it in both states.
-    elastic = _of(name, still)
-    first = np.concatenate([_STATE.v * 0, _STATE.tau, _STATE.v2 * 0, _STATE.v * 0])
-    assert (_of(name) - elastic) @ (speeds - first) < 0
-
-
-@pytest.mark.parametrize(("name", "follows"), [("load_before", False), ("load_following", True)])
-def test_a_load_is_at_its_point(name: str, follows: bool) -> None:
-    R = _rotation(_STATE.q)
-    force, moment = (R.apply(x) if follows else np.array(x) for x in (connectors.PUSHED, connectors.TWISTED))
-    moment = R.inv().apply(moment + np.cross(R.apply(connectors.FIRST), force))
-    np.testing.assert_allclose(_of(name), [*force, *moment], atol=1e-14)
-
-
-def test_angles_and_velocities_of_a_body() -> None:
-    displaced, sensed, R = _of("body_displaced"), _of("body_sensed"), _rotation(_STATE.q)
-    np.testing.assert_allclose(Rotation.from_euler("XYZ", displaced[3:]).as_matrix(), R.as_matrix(), atol=1e-14)
-    np.testing.assert_allclose(sensed[3:6], _STATE.v + R.apply(np.cross(_STATE.tau, connectors.FIRST)), atol=1e-14)
-    np.testing.assert_allclose(sensed[:6], _of("point_sensed"), atol=0)
 
 
 def test_laws_go_on_where_their_parts_meet() -> None:
