@@ -122,11 +122,7 @@ def on_condition(
     Raises:
         DescriptionError: A block can't run on a condition, or an initial value is that of no outlet.
     """
-    initial: dict[str, dict[str, Any]] = {}
-    for outlet, source in outlets.items():
-        name, _, port = source.rpartition(".") if "." in source else (source, "", "")
-        initial.setdefault(name, {})[port] = condition.initial.get(outlet, 0.0)
-    problems = list(_unmet(blocks, condition, outlets))
+    initial, problems = _initial(blocks, condition, outlets), list(_unmet(blocks, condition, outlets))
     for name, block in blocks.items():
         problems += _unfit(block, condition, name in initial)
     if problems:
@@ -143,6 +139,31 @@ def on_condition(
             yield name, block
     for name in condition.signals():
         yield name, AboveZero(name=name)
+
+
+def _initial(
+    blocks: Mapping[str, Block], condition: Condition, outlets: Mapping[str, str]
+) -> dict[str, dict[str, Any]]:
+    """Block -> output that outlets read, "" for the only one -> its value before; several outlets may state the value.
+
+    Raises:
+        DescriptionError: They state different ones.
+    """
+    initial: dict[str, dict[str, Any]] = {}
+    stated: dict[tuple[str, str], str] = {}
+    for outlet, source in outlets.items():
+        block, _, port = source.rpartition(".") if "." in source else (source, "", "")
+        port = "" if block in outlets.values() else port  # A block that is a source has one output.
+        values = initial.setdefault(block, {})
+        if outlet not in condition.initial:
+            values.setdefault(port, 0.0)
+            continue
+        other = stated.setdefault((block, port), outlet)
+        values[port] = condition.initial[outlet]
+        if not np.array_equal(values[port], condition.initial[other]):
+            what, found = f"condition: initial values of '{other}' and '{outlet}' differ", f"both read '{source}'"
+            raise DescriptionError(what, found, "an output has one value before the part runs", "state one of them")
+    return initial
 
 
 def _unmet(blocks: Mapping[str, Block], condition: Condition, outlets: Mapping[str, str]) -> Iterator[Problem]:

@@ -107,8 +107,9 @@ def test_a_condition_within_a_condition() -> None:
     inner.include("part", summing(), None, sf.Condition(enabled=True, states="reset"))
     inner.add_inlet("u", "part.u")
     inner.add_inlet("on", "part.enabled")
-    inner.outlets |= {"x": "part.x"}
+    inner.outlets |= {"x": "part.x", "same": "part.x"}
     diagram = whole({})
+    # The value of an outlet is that of its output, which other outlets read, too: "part.x" is one that is not named.
     condition = sf.Condition(enabled="trigger", outputs="reset", initial={"x": BEFORE})
     diagram.include("outer", inner, None, condition, u="given", on="enable")
     simulation = sf.Simulation(diagram, SAME_BITS)
@@ -125,6 +126,7 @@ def test_a_condition_within_a_condition() -> None:
             out, x, was = (x, x + STEP * 2.0 * GIVEN[k], on) if on else (out, x, on)
         found.append(out if TRIGGER[k] > 0.0 else BEFORE)
     np.testing.assert_allclose(run["outer.x"], found, rtol=1e-13)
+    assert np.array_equal(run["outer.same"], run["outer.x"])
     assert np.array_equal(run["outer.x"], other["outer.x"])
     assert as_data(simulation.resolved)["blocks"]["outer/part/sum"]["kind"] == "integrator"
 
@@ -213,6 +215,7 @@ def _with(block: Any, outlet: str = "", inner: bool = False, **wires: str) -> sf
             {},
             ["input 'enabled' is taken"],
         ),
+        (_with(Counter(name="n", period=STEP), "sum"), {"initial": {"x": 1, "more": 2}}, ["'x' and 'more' differ"]),
         (summing(), {"initial": {"x": float("nan")}}, ["finite numbers"]),
         (summing(), {"edge": "up"}, ["unknown edge"]),
         (summing(), {"states": "kept"}, ["unknown states"]),
