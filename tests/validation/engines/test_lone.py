@@ -111,6 +111,26 @@ def test_builders_of_newton_make_what_is_stated() -> None:
         assert judge("planted", tree, one.cell.function, old, one.want).verdict == "wrong"
 
 
+def test_depths_of_solids_and_meshes_that_are_mirrored_are_asked_of_mujoco() -> None:
+    """Half a depth, that of a ball on the surface, a normal scaled as its vertex, a face from inside are red."""
+    require("mujoco", "engine-mujoco")
+    planted = {
+        "distance_box_in_box:contact": lambda x: x / 2.0,
+        "distance_ball_in_box:contact": lambda x: x + 0.125,
+        "distance_capsule_to_floor": lambda x: x + 0.125,
+        "normal_of_mesh_scaled": lambda x: x * np.array([2.0, 0.5, 4.0]) ** 2,
+        "face_of_tetrahedron_mirrored:file": lambda x: -x,
+        "volume_of_tetrahedron_mirrored": lambda x: -x,
+    }
+    tree = SINGLE["rotations"]
+    found = list(judged(OWN["mujoco"], Job("mujoco", tree, tuple(planted), SEED), Truths()))
+    assert [one.cell.verdict for one in found] == ["right"] * len(planted)
+    for one, fault in zip(found, planted.values(), strict=True):
+        assert one.want is not None
+        value = fault(np.asarray(one.answer.value))
+        assert judge("planted", tree, one.cell.function, value, one.want).verdict == "wrong"
+
+
 def test_a_mass_that_is_read_where_none_is_stated_is_a_red_cell() -> None:
     pytest.importorskip("yourdfpy")
     one = urdf.files()["urdf: mass without value"]

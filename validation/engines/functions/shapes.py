@@ -14,11 +14,36 @@ def _distances() -> dict[str, Function]:
         f"distance_{one}_{other}": (f"distance of a {one} and a {other} (1), {_SOLIDS}", truth)
         for (one, other), truth in shapes.DISTANCES.items()
     }
-    rows["distance_ball_in_box"] = (
-        f"signed distance of the ball about {shapes.NEAR_FACE} of a box (1), {_SOLIDS}",
-        shapes.ball_in_box,
-    )
+    for (one, other), place in shapes.INSIDE.items():
+        about = f"signed distance of a {one} at {place} of a {other} that is turned as it is (1), {_SOLIDS}"
+        rows[f"distance_{one}_in_{other}"] = (about, shapes.overlap(one, other))
+    for one in shapes.MET:
+        about = f"signed distance of a floor and of a {one}, turned by R, {shapes.HEIGHT} above it (1), {_SOLIDS}"
+        rows[f"distance_{one}_to_floor"] = (about, shapes.to_floor(one))
     return functions_of(rows, "turns")
+
+
+def _surfaces() -> dict[str, Function]:
+    """Surfaces of triangles around solids of the sizes x = |v| + 1/2; a volume has the sign of its surface."""
+    rows = {
+        "volume_of_prism": ("of a prism of four sides, x[0] to its edges, x[1] long (1)", shapes.prism_volume),
+        "volume_of_pyramid": ("of a pyramid on such a base, x[1] high (1)", shapes.pyramid_volume),
+        "volume_of_ring": ("of a ring of four sides, from x[0] to x[0] + x[1], x[2] high (1)", shapes.ring_volume),
+        "volume_of_bar": ("of a box with the sides x (1)", shapes.bar_volume),
+    }
+    for name, factors in shapes.SCALES.items():
+        of = f"of the tetrahedron of the origin and of x on the axes, {factors} times as large"
+        rows[f"volume_of_tetrahedron{name}"] = (f"{of} (1)", shapes.tetrahedron_volume(factors))
+        rows[f"centre_of_tetrahedron{name}"] = (f"mass centre {of} (3)", shapes.tetrahedron_centre(factors))
+        rows[f"face_of_tetrahedron{name}"] = (
+            f"area and normal of the face opposite the origin {of} (3)",
+            shapes.tetrahedron_face(factors),
+        )
+        rows[f"normal_of_mesh{name}"] = (
+            f"unit normal of a surface with the normal v + (4, 8, 8), {factors} times as large (3)",
+            shapes.scaled_normal(factors),
+        )
+    return functions_of(rows, "turns", "defaults and parameters: gears, rotors, dampers, model instances")
 
 
 def _rays() -> dict[str, Function]:
@@ -52,4 +77,4 @@ def _moments() -> dict[str, Function]:
     return functions_of(rows, "turns")
 
 
-SHAPES = _distances() | _rays() | _moments()
+SHAPES = _distances() | _rays() | _moments() | _surfaces()

@@ -9,7 +9,7 @@ import re
 from collections.abc import Iterable, Mapping
 
 from ...truth.geometry.poses import MASS
-from ...truth.geometry.shapes import BEYOND, DISTANCES, HALF, MET, NEAR_FACE, RADIUS, SIDES, WITHIN
+from ...truth.geometry.shapes import BEYOND, DISTANCES, HALF, HEIGHT, INSIDE, MET, RADIUS, SCALES, SIDES, WITHIN
 from ..writing.source import Way, ways_of
 
 # Solid -> radius and half length, half sides or semi-axes; the same with whole lengths and sides.
@@ -49,6 +49,29 @@ def _distances(native: str, solids: Mapping[str, str], text: str, name: str = ""
         f"distance_{one}_{other}{name}": Way(native, text.replace("ONE", solids[one]).replace("OTHER", solids[other]))
         for one, other in DISTANCES
         if one in solids and other in solids
+    }
+
+
+def _overlaps(
+    native: str, solids: Mapping[str, str], text: str, name: str = "", pairs: Iterable[tuple[str, str]] = INSIDE
+) -> dict[str, Way]:
+    """Signed distances of an engine's solids that overlap: code with ONE and OTHER, and PLACE for where ONE is."""
+    return {
+        f"distance_{one}_in_{other}{name}": Way(
+            native,
+            text.replace("ONE", solids[one]).replace("OTHER", solids[other]).replace("PLACE", f"{INSIDE[one, other]}"),
+        )
+        for one, other in pairs
+        if one in solids and other in solids
+    }
+
+
+def _floors(native: str, solids: Mapping[str, str], text: str, name: str = "") -> dict[str, Way]:
+    """Signed distances of an engine's solids and a floor: code with SOLID."""
+    return {
+        f"distance_{one}_to_floor{name}": Way(native, text.replace("SOLID", solids[one]))
+        for one in MET
+        if one in solids
     }
 
 
@@ -99,7 +122,15 @@ def _mujoco_two(one: str, other: str, poses: str) -> str:
 
 
 _APART = _mujoco_two("ONE", "OTHER", f"[a, {_BEYOND}], [q, q2]")
-_INSIDE = _R + _mujoco_two(_GEOMS["ball"], _GEOMS["box"], f"[a + R @ {list(NEAR_FACE)}, a], [q, q]")
+_INSIDE = _R + _mujoco_two("ONE", "OTHER", "[a + R @ PLACE, a], [q, q]")
+# Contacts are of bodies that move.
+_FREE = "<body><freejoint/><geom {}/></body>"
+_CONTACT = (
+    "m = mj.MjModel.from_xml_string('<mujoco><worldbody>{}</worldbody></mujoco>')\n"
+    "d = mj.MjData(m)\nd.qpos[:] = {}\nmj.mj_forward(m, d)\nvalue = [min(one.dist for one in d.contact)]"
+)
+_CONTACTS = _R + _CONTACT.format(_FREE.format("ONE") + _FREE.format("OTHER"), "[*a + R @ PLACE, *q, *a, *q]")
+_ON_FLOOR = _CONTACT.format('<geom type="plane" size="0 0 1"/>' + _FREE.format("SOLID"), f"[*a[:2], {HEIGHT}, *q]")
 _GEOM_DISTANCE = "value = [mj.mj_geomDistance(m, d, 0, 1, 100.0, None)]"
 # Size and type, as mju_rayGeom takes them.
 _SIZED = {
@@ -126,12 +157,52 @@ _OF_SIZES = {
     "cylinder": 'type="cylinder" size="{x[0]} {x[1] / 2}"',
     "capsule": 'type="capsule" size="{x[0]} {x[1] / 2}"',
 }
+# The tetrahedron of `tetrahedron_volume`, by its faces from outside, the last opposite the origin. Vertices of meshes
+# are of single precision (mjModel.mesh_vert).
+FACES = (0, 2, 1, 0, 1, 3, 0, 3, 2, 1, 2, 3)
+_FACES = " ".join(map(str, FACES))
+_AS_OBJ = " ".join(f"f {' '.join(str(k + 1) for k in FACES[3 * n : 3 * n + 3])}\\n" for n in range(4))
+_MESH = (
+    'm = mj.MjModel.from_xml_string(f\'<mujoco><asset><mesh name="t" scale="SCALE" {stated}/></asset>'
+    '<worldbody><body><freejoint/><geom type="mesh" mesh="t" density="8"/></body></worldbody></mujoco>\', files)\n'
+    "R = np.zeros(9)\nmj.mju_quat2Mat(R, m.mesh_quat[0])\nR = R.reshape(3, 3)\n"
+)
+_STATED = f'{_X}files = {{}}\nstated = f\'vertex="0 0 0 {{x[0]}} 0 0 0 {{x[1]}} 0 0 0 {{x[2]}}" face="{_FACES}"\'\n'
+_OF_FILE = (
+    f"{_X}text = f'v 0 0 0\\nv {{x[0]}} 0 0\\nv 0 {{x[1]}} 0\\nv 0 0 {{x[2]}}\\n{_AS_OBJ}'\n"
+    "files, stated = {'t.obj': text.encode()}, 'file=\"t.obj\"'\n"
+)
+_OF_MESHES = {
+    "volume_of_tetrahedron": "value = [m.body_mass[1] / 8]",
+    "centre_of_tetrahedron": "value = m.body_ipos[1]",
+    "face_of_tetrahedron": "p, q, r = m.mesh_vert[m.mesh_face[3]] @ R.T\nvalue = np.cross(q - p, r - p) / 2",
+}
+_WITH_NORMALS = (
+    f"{_STATED}n = v + [4.0, 8.0, 8.0]\nstated += ' normal=\"' + ' '.join(map(repr, [*map(float, n)] * 4)) + '\"'\n"
+)
+
+
+def _mujoco_meshes() -> dict[str, Way]:
+    ways = {}
+    for name, factors in SCALES.items():
+        made = _MESH.replace("SCALE", " ".join(map(str, factors)))
+        for function, text in _OF_MESHES.items():
+            ways[function + name] = Way("mesh vertex, face, scale", _STATED + made + text, slack=1e-6)
+            ways[f"{function}{name}:file"] = Way("mesh file, scale", _OF_FILE + made + text, slack=1e-6)
+        normal = "value = R @ m.mesh_normal[m.mesh_facenormal[3][0]]"
+        ways[f"normal_of_mesh{name}"] = Way("mesh normal, scale", _WITH_NORMALS + made + normal, slack=1e-6)
+    return ways
+
+
 _SYMMETRIC = "d = 1 + v**2 / (1 + v**2)\nA = R @ np.diag(d) @ R.T\nA = (A + A.T) / 2\n"
 MUJOCO = (
     _distances("mj_geomDistance", _GEOMS, _APART + _GEOM_DISTANCE)
-    | {"distance_ball_in_box": Way("mj_geomDistance", _INSIDE + _GEOM_DISTANCE)}
+    | _overlaps("mj_geomDistance", _GEOMS, _INSIDE + _GEOM_DISTANCE)
     | _distances("sensor distance", _GEOMS, f"{_APART}value = d.sensordata", ":sensor")
-    | {"distance_ball_in_box:sensor": Way("sensor distance", f"{_INSIDE}value = d.sensordata")}
+    | _overlaps("sensor distance", _GEOMS, f"{_INSIDE}value = d.sensordata", ":sensor")
+    | _overlaps("mj_collision, contact.dist", _GEOMS, _CONTACTS, ":contact")
+    | _floors("mj_collision, contact.dist", _GEOMS, _ON_FLOOR)
+    | _mujoco_meshes()
     | _rays("mju_rayGeom", _SIZED, f"{_R}{_LINE}value = [mj.mju_rayGeom(a, R.ravel(), SOLID)]")
     | _rays("mj_ray", _GEOMS, _CAST, ":mj_ray")
     | {
@@ -167,11 +238,13 @@ _PAIR = (
 _TURN = "R, Q = pin.Quaternion(q).matrix(), pin.Quaternion(q2).matrix()\n"
 PINOCCHIO = (
     _distances("computeDistances", _COAL, f"{_TURN}X, Y = pin.SE3(R, a), pin.SE3(Q, {_BEYOND})\n{_PAIR}")
-    | ways_of(f"""
-== distance_ball_in_box | computeDistances
-{_TURN}X, Y = pin.SE3(R, a + R @ {list(NEAR_FACE)}), pin.SE3(R, a)
-{_PAIR.replace("ONE", _COAL["ball"]).replace("OTHER", _COAL["box"])}
-""")
+    | _overlaps("computeDistances", _COAL, f"{_TURN}X, Y = pin.SE3(R, a + R @ PLACE), pin.SE3(R, a)\n{_PAIR}")
+    | _floors(
+        "computeDistances",
+        _COAL,
+        f"{_TURN}X, Y = pin.SE3(R, np.array([*a[:2], {HEIGHT}])), pin.SE3.Identity()\n"
+        + _PAIR.replace("ONE", "SOLID").replace("OTHER", "Halfspace(0.0, 0.0, 1.0, 0.0)"),
+    )
     | {
         f"moments_{one}": Way(
             f"Inertia.From{of.partition('(')[0]}", f"{_X}value = np.diag(pin.Inertia.From{of}.inertia)"
@@ -216,12 +289,13 @@ _TO_POINT = (
 )
 _OF_TWO = "one, other = placed('one', X, drake.ONE), placed('other', Y, drake.OTHER)\n"
 _AT = "X, Y = drake.RigidTransform(drake.Quaternion(q), a), drake.RigidTransform(drake.Quaternion(q2), {})\n"
-_IN_BOX = (
-    f"Y = drake.RigidTransform(drake.Quaternion(q), a)\np = Y @ np.array({list(NEAR_FACE)})\n"
-    "X = drake.RigidTransform(p)\n"
+_WITHIN = (
+    "Y = drake.RigidTransform(drake.Quaternion(q), a)\np = Y @ np.array(PLACE)\n"
+    "X = drake.RigidTransform(drake.Quaternion(q), p)\n"
 )
 # Table 4 of QueryObject.ComputeSignedDistancePairwiseClosestPoints, of solids of another size.
 _OBSERVED = {"distance_capsule_capsule": 2e-5, "distance_capsule_box": 3e-6}
+_OBSERVED_INSIDE = {"distance_capsule_in_capsule": 2e-5, "distance_capsule_in_box": 2e-5, "distance_box_in_box": 2e-5}
 DRAKE = (
     _allowing(
         _distances(
@@ -236,12 +310,24 @@ DRAKE = (
         )
         for other in ("capsule", "cylinder", "box")
     }
-    | ways_of(f"""
-== distance_ball_in_box | ComputeSignedDistancePairClosestPoints
-{(_SCENE + _IN_BOX + _OF_TWO + _SIGNED).replace("ONE", _DRAKE["ball"]).replace("OTHER", _DRAKE["box"])}
-== distance_ball_in_box:point | ComputeSignedDistanceToPoint
-{_SCENE}{_IN_BOX}{_TO_POINT.replace("OTHER", _DRAKE["box"])}
-""")
+    | _allowing(
+        _overlaps("ComputeSignedDistancePairClosestPoints", _DRAKE, _SCENE + _WITHIN + _OF_TWO + _SIGNED)
+        | _floors(
+            "ComputeSignedDistancePairClosestPoints",
+            {"ball": _DRAKE["ball"]},  # Table 4: with half spaces, spheres alone.
+            f"{_SCENE}X = drake.RigidTransform([*a[:2], {HEIGHT}])\nY = drake.RigidTransform()\n"
+            + _OF_TWO.replace("ONE", "SOLID").replace("OTHER", "HalfSpace()")
+            + _SIGNED,
+        ),
+        _OBSERVED_INSIDE,
+    )
+    | _overlaps(
+        "ComputeSignedDistanceToPoint",
+        _DRAKE,
+        _SCENE + _WITHIN + _TO_POINT,
+        ":point",
+        [pair for pair in INSIDE if pair[0] == "ball"],
+    )
     | {
         f"moments_{one}": Way(
             f"UnitInertia.{of.partition('(')[0]}", f"{_X}value = {MASS} * drake.UnitInertia.{of}.get_moments()"
@@ -292,7 +378,7 @@ DART = (
     | {
         f"distance_ball_in_box:{name}": Way(
             f"{name}CollisionDetector, CollisionGroup.collide",
-            f"{_DART_R}X, Y = dart.math.Isometry3(R, a + R @ {list(NEAR_FACE)}), dart.math.Isometry3(R, a)\n"
+            f"{_DART_R}X, Y = dart.math.Isometry3(R, a + R @ {INSIDE['ball', 'box']}), dart.math.Isometry3(R, a)\n"
             + _TOUCHING.replace("ONE", _DART["ball"]).replace("OTHER", _DART["box"]).replace("KIND", name),
         )
         for name in ("DART", "Bullet", "FCL", "Ode")
@@ -322,22 +408,28 @@ _PLACED = "p.createMultiBody(0, p.createCollisionShape({}), -1, {}, {})"
 _BULLET_R = "R = np.reshape(p.getMatrixFromQuaternion(q), (3, 3))\n"
 _WORLD = "if not p.isConnected(): p.connect(p.DIRECT)\np.resetSimulation()\n"
 _CLOSEST = "value = [p.getClosestPoints(one, other, 100.0)[0][8]]"
+_DEEPEST = "value = [min(point[8] for point in p.getClosestPoints(one, other, 100.0))]"
 # The margin of 0.001 is within a box or a cylinder and rounds its edges (Bullet's manual, "Collision Margin"); rays end
 # where what is left has a square below 0.0001 (epsilon of btSubSimplexConvexCast.cpp).
-_MARGINS = {"distance_.*(box|cylinder)": 1e-3, "ray_.*": 3e-3}
+_MARGINS = {"distance_.*(box|cylinder)(_to_floor)?": 1e-3, "ray_.*": 3e-3}
 PYBULLET = _allowing(
     _distances(
         "getClosestPoints",
         _BULLET,
         f"{_WORLD}one, other = {_PLACED.format('ONE', 'a', 'q')}, {_PLACED.format('OTHER', _BEYOND, 'q2')}\n{_CLOSEST}",
     )
-    | {
-        "distance_ball_in_box": Way(
-            "getClosestPoints",
-            f"{_WORLD}{_BULLET_R}one = {_PLACED.format(_BULLET['ball'], f'a + R @ {list(NEAR_FACE)}', 'q')}\n"
-            f"other = {_PLACED.format(_BULLET['box'], 'a', 'q')}\n{_CLOSEST}",
-        )
-    }
+    | _overlaps(
+        "getClosestPoints",
+        _BULLET,
+        f"{_WORLD}{_BULLET_R}one = {_PLACED.format('ONE', 'a + R @ PLACE', 'q')}\n"
+        f"other = {_PLACED.format('OTHER', 'a', 'q')}\n{_DEEPEST}",
+    )
+    | _floors(
+        "getClosestPoints",
+        _BULLET,
+        f"{_WORLD}one = {_PLACED.format('SOLID', f'[*a[:2], {HEIGHT}]', 'q')}\n"
+        f"other = {_PLACED.format('p.GEOM_PLANE', '[0, 0, 0]', '[0, 0, 0, 1]')}\n{_DEEPEST}",
+    )
     | _rays(
         "rayTest",
         _BULLET,

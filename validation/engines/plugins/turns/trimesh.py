@@ -3,7 +3,9 @@
 from __future__ import annotations
 
 from ...truth.geometry.poses import AWAY, POINTS, SEQUENCES, WEIGHTS
+from ...truth.geometry.shapes import SCALES
 from ..writing.source import HALF_TURNS, ON_END, Way, ways_of
+from .solids import FACES
 
 IMPORTS = ("import trimesh", "from trimesh import transformations as tr")
 _R = "R, Q = tr.quaternion_matrix(q), tr.quaternion_matrix(q2)\n"
@@ -81,4 +83,59 @@ value = [tr.quaternion_matrix(tr.quaternion_from_euler(*v, 'r' + order))[:3, :3]
         ("weights", "", "weights"),
         ("weights of none", "places[-1] += 8.0\n", "np.sign(np.arange(len(marks))[::-1])"),
     )
+}
+# Solids that are made of triangles, by their sizes, with and without a placement or a reflection.
+_SIZES = "x = np.abs(v) + 0.5\n"
+_MADE = {
+    "prism": "cylinder(x[0], x[1], sections=4",
+    "pyramid": "cone(x[0], x[1], sections=4",
+    "ring": "annulus(x[0], x[0] + x[1], x[2], sections=4",
+    "bar": "box(x",
+}
+_PLACED = {"": "", ":placed": ", transform=X", ":mirrored": ", transform=X @ np.diag([1.0, 1.0, -1.0, 1.0])"}
+WAYS |= {
+    f"volume_of_{solid}{how}": Way(
+        f"creation.{made.partition('(')[0]}", f"{_SIZES}{_X}value = [trimesh.creation.{made}{placed}).volume]"
+    )
+    for solid, made in _MADE.items()
+    for how, placed in _PLACED.items()
+}
+_CORNERS = f"{_SIZES}corners, faces = np.vstack([np.zeros(3), np.diag(x)]), np.reshape({[*FACES]}, (4, 3))\n"
+# Faces of OBJ by places in all that the file has, and by places before each face, where more vertices come behind.
+_OBJ = (
+    "lines = ['v ' + ' '.join(map(repr, map(float, p))) for p in corners]\n"
+    "lines += ['f ' + ' '.join(str(k + {first}) for k in face) for face in faces] + ['v 8 8 8'] * 3\n"
+    "solid = trimesh.load_mesh(io.StringIO('\\n'.join(lines)), file_type='obj', process=False)\n"
+)
+_FORMATS = ("stl", "ply", "off", "obj", "glb")
+_READ = {
+    "": "solid = trimesh.Trimesh(corners, faces, process=False)\n",
+    ":OBJ": _OBJ.format(first=1),
+    ":OBJ, relative": _OBJ.format(first=-4),
+} | {
+    f":{one}, written": "solid = trimesh.Trimesh(corners, faces, process=False)\n"
+    f"data = solid.export(file_type='{one}')\n"
+    "data = data.encode() if isinstance(data, str) else data\n"
+    f"solid = trimesh.load_mesh(io.BytesIO(data), file_type='{one}', process=False)\n"
+    for one in _FORMATS
+}
+_OF_SOLID = {
+    "volume_of_tetrahedron": "value = [solid.volume]",
+    "centre_of_tetrahedron": "value = solid.center_mass",
+    "face_of_tetrahedron": "value = solid.triangles_cross[3] / 2",
+}
+WAYS |= {
+    f"{function}{name}{how}": Way(
+        "apply_transform" if name else "Trimesh, load_mesh",
+        "import io\n"
+        + _CORNERS
+        + made
+        + f"solid.apply_transform(np.diag([{', '.join(map(str, factors))}, 1.0]))\n"
+        + text,
+        slack=0.0 if how in ("", ":OBJ", ":OBJ, relative") else 1e-6,  # Formats of single precision, or of 8 digits.
+    )
+    for function, text in _OF_SOLID.items()
+    for name, factors in SCALES.items()
+    for how, made in _READ.items()
+    if not (name and how)
 }

@@ -1,7 +1,8 @@
-"""Solids in many digits: their moments, where rays meet them, how far they are apart.
+"""Solids in many digits: their moments, where rays meet them, how far they are apart or overlap.
 
 The first solid stands at X = (R, a) of the coordinates q, the second at (Q, tau + BEYOND) of q2. Balls, capsules,
-cylinders, boxes and ellipsoids are about the origins of their frames; capsules and cylinders are along z.
+cylinders, boxes and ellipsoids are about the origins of their frames; capsules and cylinders are along z. The signed
+distance of solids that overlap is minus the least way by which one of them must move for them to touch from outside.
 """
 
 from __future__ import annotations
@@ -24,8 +25,20 @@ RADIUS, HALF = 0.375, 0.5
 SIDES = (0.25, 0.5, 0.75)
 # Where the second solid is from the first, and what rays go through: a point of the solid's own.
 BEYOND, WITHIN = (2.0, -4.0, 4.0), (0.0625, -0.125, 0.1875)
-# A point of a box that is the nearest to its face along x.
-NEAR_FACE = (0.125, 0.25, 0.25)
+# Pairs that overlap -> where the first stands in the frame of the second, turned as this is: a point of a box that is
+# the nearest to its face along x; 1/4 from the axes of round ones, nearer to their mantles than to their ends.
+_NEAR_FACE, _NEAR_AXIS = (0.125, 0.25, 0.25), (0.15, 0.2, 0.25)
+INSIDE = {
+    ("ball", "ball"): (0.125, 0.25, 0.25),
+    ("ball", "capsule"): _NEAR_AXIS,
+    ("ball", "cylinder"): _NEAR_AXIS,
+    ("ball", "box"): _NEAR_FACE,
+    ("capsule", "capsule"): _NEAR_AXIS,
+    ("capsule", "box"): _NEAR_FACE,
+    ("box", "box"): (0.375, 0.25, 0.25),
+}
+# Height of a solid's origin above a floor, less than what each solid reaches down from it.
+HEIGHT = 0.125
 _HALF = Decimal("0.5")
 
 
@@ -143,9 +156,28 @@ DISTANCES: dict[tuple[str, str], TruthOf] = {
 }
 
 
-def ball_in_box(t: Truth, s: Point) -> Exact:
-    """Signed distance (1) of a ball about NEAR_FACE of a box: what it must move by to touch the box from outside."""
-    return np.array([Decimal(NEAR_FACE[0]) - Decimal(SIDES[0]) - Decimal(RADIUS)])
+def overlap(one: str, other: str) -> TruthOf:
+    """Signed distance (1) of a solid that stands at INSIDE of another."""
+    place = exact(INSIDE[one, other])
+    if other == "box":  # Of the faces across x the first reaches 2 SIDES[0], RADIUS or as far along x.
+        apart = place[0] - Decimal(SIDES[0]) - Decimal(SIDES[0] if one == "box" else RADIUS)
+    else:
+        apart = _length(place if other == "ball" else place[:2]) - 2 * Decimal(RADIUS)
+    return lambda t, s: np.array([apart])
+
+
+def _support(solid: str, down: Exact) -> Exact:
+    """How far a solid reaches from its origin in the unit direction `down` of its frame."""
+    if solid in ("box", "ellipsoid"):
+        reach = abs(down) * exact(SIDES)
+        return sum(reach) if solid == "box" else _length(reach)
+    aside = root(down[0] ** 2 + down[1] ** 2) if solid == "cylinder" else Decimal(1)
+    return Decimal(RADIUS) * aside + (Decimal(0) if solid == "ball" else abs(down[2]) * Decimal(HALF))
+
+
+def to_floor(solid: str) -> TruthOf:
+    """Signed distance (1) of the solid that is turned by R, at HEIGHT, and of the half space below z = 0."""
+    return lambda t, s: np.array([Decimal(HEIGHT) - _support(solid, -turn(t, s.q)[2])])
 
 
 def _ray(t: Truth, s: Point) -> tuple[Exact, Exact]:
@@ -294,3 +326,58 @@ def capsule_moments(sizes: Exact) -> Exact:
 def principal_moments(t: Truth, s: Point) -> Exact:
     """Eigenvalues (3), the least first, of R diag(1 + v^2 / (1 + v^2)) R^T."""
     return np.array(sorted(1 + s.v**2 / (1 + s.v**2)))
+
+
+# Factors of meshes that are scaled, and that are mirrored.
+SCALES = {"": (1.0, 1.0, 1.0), "_scaled": (2.0, 0.5, 4.0), "_mirrored": (-2.0, 0.5, 4.0)}
+
+
+def tetrahedron_volume(factors: tuple[float, ...]) -> TruthOf:
+    """Volume (1) of the tetrahedron of the origin and of points at the sizes on the axes, scaled."""
+    return lambda t, s: np.array([np.prod(_sizes(s) * abs(exact(factors))) / 6])
+
+
+def tetrahedron_centre(factors: tuple[float, ...]) -> TruthOf:
+    """Its mass centre (3)."""
+    return lambda t, s: _sizes(s) * exact(factors) / 4
+
+
+def tetrahedron_face(factors: tuple[float, ...]) -> TruthOf:
+    """Area of its face opposite the origin, along the normal outwards (3): (b - a) x (c - a) / 2 of its corners."""
+
+    def function(t: Truth, s: Point) -> Exact:
+        x = _sizes(s) * abs(exact(factors))
+        return exact(np.sign(factors)) * np.prod(x) / x / 2
+
+    return function
+
+
+def scaled_normal(factors: tuple[float, ...]) -> TruthOf:
+    """Unit normal (3) of a surface with the normal v + (4, 8, 8), scaled: at right angles to what is scaled with it."""
+
+    def function(t: Truth, s: Point) -> Exact:
+        normal = (s.v + exact((4.0, 8.0, 8.0))) / exact(factors)
+        return normal / _length(normal)
+
+    return function
+
+
+def prism_volume(t: Truth, s: Point) -> Exact:
+    """Volume (1) of a prism with four sides: its base has corners at sizes[0] from its middle."""
+    return np.array([2 * _sizes(s)[0] ** 2 * _sizes(s)[1]])
+
+
+def pyramid_volume(t: Truth, s: Point) -> Exact:
+    """Volume (1) of a pyramid on that base."""
+    return np.array([2 * _sizes(s)[0] ** 2 * _sizes(s)[1] / 3])
+
+
+def ring_volume(t: Truth, s: Point) -> Exact:
+    """Volume (1) of a frame of height sizes[2], from sizes[0] to the sum of the first two, of four sides."""
+    x = _sizes(s)
+    return np.array([2 * ((x[0] + x[1]) ** 2 - x[0] ** 2) * x[2]])
+
+
+def bar_volume(t: Truth, s: Point) -> Exact:
+    """Volume (1) of a box with these sides."""
+    return np.array([np.prod(_sizes(s))])
