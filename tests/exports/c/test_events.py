@@ -83,6 +83,15 @@ def test_a_package_does_not_start_within_a_floor(tmp_path: Path) -> None:
     assert f"status {Status.WRONG_CONTACT}" in run(program, "0.01", "0.1", cwd=tmp_path)
 
 
+def test_a_body_that_begins_on_its_floor_rests_in_packages(tmp_path: Path) -> None:
+    """The event acts at the start, as in runs (simulation.md, (4f)): twice, until the contact stays."""
+    strike = {"strike": sf.Event("z", "falling", action={"contact": 1}, restitution=0.5, rests="lam.floor.z")}
+    program = packaged(BALL, tmp_path / "c", MAIN, name="plan", start={"z": 0.0}, events=strike, dt=1e-3)
+    *met, status, state = run(program, "0.01", "0.05", cwd=tmp_path).splitlines()
+    assert status == f"status {Status.FINISHED}" and met == ["strike 0", "strike 0"]
+    assert np.array(state.split()[1:], dtype=float) == pytest.approx([0.0, 0.0], abs=1e-14)
+
+
 def test_a_package_ends_where_an_event_does_or_an_action_fails(tmp_path: Path) -> None:
     """With the state that is there; targets that look for none refuse them."""
     ends = {**STRIKE, "rest": sf.Event("t - 0.9", terminal=True)}

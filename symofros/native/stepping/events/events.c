@@ -282,8 +282,8 @@ static int32_t sym_find_departure(sym_event_step *step, int32_t i, double x, sym
     return status;
 }
 
-/* Whether event i, which acts, may pass zero unseen as it is there where the step begins, (4e): it has acted there, its contact has
- * opened there, or the run begins there; bodies that strike may have been held there since. */
+/* Whether the action of event i may be missed, as it is at zero where the step begins, (4e), (4f): it has acted there, its contact has
+ * opened there, or the run has begun at zero. */
 static int32_t sym_may_pass_unseen(const sym_run *r, int32_t i, double begin) {
     const sym_actions *a = r->actions;
     const int32_t direction = r->system->event_direction[i], strikes = sym_sets_speeds(r, i);
@@ -294,9 +294,9 @@ static int32_t sym_may_pass_unseen(const sym_run *r, int32_t i, double begin) {
     return r->acted_at[i] == -HUGE_VAL && (strikes || (r->acted_at[r->system->n_events] == r->t && r->system->event_terminal[i] != 1));
 }
 
-/* The first event whose action is missed, since it is at zero where the step begins and passes it from there: *lost, -1: there is none.
- * One that has acted there does so if it sets off from rest; one that has is left to pass by itself. *at: where it acts. Returns 0 or
- * a status. */
+/* *lost: the first event whose action is missed up to x, since it is at zero where the step begins and goes on through it, (4e), (4f);
+ * -1: there is none. One that has just acted is missed only if it sets off from rest: else its action lets it pass. *at: where it acts.
+ * Returns 0 or a status. */
 static int32_t sym_find_lost_event(sym_event_step *step, double x, int32_t *lost, double *at) {
     const sym_run *r = step->run;
     int32_t i, status = 0, at_zero;
