@@ -53,8 +53,8 @@ def force_remarks(system: System) -> Iterator[str]:
                 yield _negative(what, value, does, "effort", where(("joint", joint.name), ""))
     for connection in system.connections:
         for what, does in (_STIFFNESS, _DAMPING):
-            value = numbers.value(getattr(connection, what))
-            if value < 0.0:
+            stated = getattr(connection, what, None)  # None: a rigid contact
+            if stated is not None and (value := numbers.value(stated)) < 0.0:
                 origin = where(("connection", connection.name), "")
                 yield _negative(f"connection '{connection.name}': {what}", value, does, "VirtualPower", origin)
 
