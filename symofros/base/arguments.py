@@ -79,17 +79,34 @@ class _Names:
         return given if self._required.issubset(given) else None
 
 
-def check_fields(stated: Any) -> None:
+def check_fields(stated: Any, names: Iterable[str] | None = None) -> None:
     """Refuse fields of a dataclass whose values its annotations do not allow.
+
+    Args:
+        stated: The dataclass.
+        names: Fields that are looked at; all if not given.
 
     Raises:
         ArgumentError: For the first such field.
     """
     kinds = kinds_of(stated.__class__)
-    for name in _fields_of(stated.__class__):
+    for name in _fields_of(stated.__class__) if names is None else names:
         kind, value = kinds.get(name), getattr(stated, name)
         if kind is not None and not kind.allows(value):
             raise refusal(f"{type(stated).__name__}: {name}", value, kind)
+
+
+def with_fields(stated: _Result, changes: Mapping[str, Any]) -> _Result:
+    """A frozen dataclass of checked fields with some of them replaced; only these are checked.
+
+    Raises:
+        ArgumentError: A value is not allowed.
+    """
+    made: _Result = object.__new__(stated.__class__)
+    made.__dict__.update(stated.__dict__, **changes)
+    check_fields(made, changes)
+    made.__dict__.update({name: _own(value) for name, value in changes.items()})
+    return made
 
 
 @cache

@@ -81,6 +81,8 @@ class MechanismInstants:
         return tuple(stated_formulas(self._tree, given))
 
     def _timed(self, formulas: Sequence[Any]) -> tuple[Value, ...]:
+        if not formulas:
+            return self._own
         return (*self._own, *(value for value in self._stated(formulas) if TIME in symbols(value)))
 
     def _search_of(self, values: tuple[Value, ...], of_states: bool) -> FormulaInstants:

@@ -2,6 +2,7 @@
 #define SYM_ANALYSIS
 #include "stepping/integrator.c"
 #include "stepping/diagnosis/spectrum.c"
+#include "stepping/diagnosis/path.c"
 #include "symofros_batch.h"
 #include "stepping/batches/batch_columns.c"
 #include "stepping/batches/batch_stepper.c"

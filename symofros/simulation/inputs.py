@@ -104,7 +104,7 @@ class InputPlan:
     def jumps(self) -> Array:
         """Instants at which a held signal changes, in order [s]."""
         held = [t[1:][np.diff(values) != 0] for _, t, values, linear in self.signals if not linear]
-        return np.unique(np.concatenate([np.zeros(0), *held]))
+        return np.unique(np.concatenate(held)) if held else np.zeros(0)
 
     def next_corner(self, t: float, end: float) -> float:
         """Time up to which linear signals stay near their chords in a step from t: a corner, or `end` [s].

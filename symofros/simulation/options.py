@@ -4,13 +4,13 @@ from __future__ import annotations
 
 import math
 from collections.abc import Mapping, Sequence
-from dataclasses import dataclass, fields, replace
+from dataclasses import dataclass
 from typing import Any, Literal
 
 import numpy as np
 from numpy.typing import ArrayLike
 
-from symofros.base.arguments import CheckedCalls, check_fields
+from symofros.base.arguments import CheckedCalls, check_fields, with_fields
 from symofros.errors import SymofrosError, UnknownNameError, did_you_mean, near_name
 from symofros.runtime.beams import BEAM_LIMIT
 
@@ -97,14 +97,14 @@ class SimulationOptions(metaclass=CheckedCalls):
         Raises:
             UnknownNameError: A name is not that of a field.
         """
-        names = [item.name for item in fields(self)]
+        names = list(self.__dataclass_fields__)
         chosen = {_ALIASES.get(name, name): value for name, value in changes.items()}
         for name in chosen:
             if name not in names:
                 rule = f"options are the fields of SimulationOptions, beside the arguments {', '.join(arguments)}"
                 remedy = _meant(name, names, arguments)
                 raise UnknownNameError(f"simulation: no option '{name}'", name, rule, remedy)
-        return replace(self, **chosen) if chosen else self
+        return with_fields(self, chosen) if chosen else self
 
     def refuse(self, names: Sequence[str], what: str, rule: str, remedy: str = "leave it out") -> None:
         """Refuse options that are stated and have no effect on this kind of run.

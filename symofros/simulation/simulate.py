@@ -6,6 +6,7 @@ import time
 from collections.abc import Callable, Mapping, Sequence
 from concurrent.futures import ThreadPoolExecutor
 from dataclasses import dataclass, replace
+from itertools import accumulate
 from typing import Any
 
 import numpy as np
@@ -256,14 +257,14 @@ def _joined(stepper: Stepper, phases: Sequence[_Phase]) -> Trajectory:
         statistics = statistics.and_then(phase.statistics)
     parts = zip(*(phase.states for phase in phases), strict=True)
     t, q, v, u = (np.concatenate(arrays) for arrays in parts) if len(phases) > 1 else last.states
-    outcome, met = last.outcome, tuple(found for phase in phases for found in phase.met)
+    outcome, met = last.outcome, tuple([found for phase in phases for found in phase.met])
     if len(phases) > 1 or last.notes:
         notes = distinct(note for phase in phases for note in (*phase.outcome.notes, *phase.notes))
         reason = outcome.reason.replace(f"{last.statistics.steps} steps", f"{statistics.steps} steps")
         outcome = replace(outcome, notes=notes, reason=reason)
-    firsts = np.cumsum([len(phase.states[0]) for phase in phases]).tolist()
+    firsts = accumulate(len(phase.states[0]) for phase in phases[:-1])
     pairs = zip(firsts, phases, phases[1:], strict=False)
-    changes = tuple((first, after.par) for first, before, after in pairs if before.acted)
+    changes = tuple([(first, after.par) for first, before, after in pairs if before.acted])
     par = np.array(phases[0].par)
     z = stepper.model.states_of(v)
     return Trajectory(stepper.model, t, q, v, u, par, outcome, met, statistics, last.bendings, changes, z)

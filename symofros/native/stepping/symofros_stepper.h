@@ -418,6 +418,10 @@ int32_t sym_run_spectrum(sym_run *run, double h, const int32_t *moving, int32_t 
  * where there are none. Returns 0, or SYM_CALLBACK_FAILED. */
 int32_t sym_run_accelerations(sym_run *run, int64_t n, const double *t, const double *q, const double *v, double *u,
                               double *a);
+/* States at shares x (m) of intervals, by their numbers (m), between states t (n), q, v of the motion with accelerations a
+ * (n, nv): their times t_x (m), q_x, v_x, and accelerations a_x (m, nv) of the cubics through the ends; work: 3 nv doubles. */
+void sym_run_path(const sym_run *run, const double *t, const double *q, const double *v, const double *a, int64_t m,
+                  const int64_t *interval, const double *x, double *work, double *t_x, double *q_x, double *v_x, double *a_x);
 /* cdef end */
 
 #endif

@@ -118,12 +118,22 @@ class NativeMemory:
 
     def table(self, struct: Any, prefix: str, rows: int, **widths: int) -> list[Array]:
         """Arrays (rows, width) behind the pointers `prefix + name` of a struct."""
-        arrays = []
-        for name, width in widths.items():
-            array = np.zeros((rows, max(1, width)))
-            setattr(struct, prefix + name, self.shared(array))
-            arrays.append(array[:, :width])
+        array = self.zeros_at(*[(struct, prefix + name, rows * width) for name, width in widths.items()])
+        arrays, at = [], 0
+        for width in widths.values():
+            end = at + rows * width
+            arrays.append(array[at:end].reshape(rows, width))
+            at = end
         return arrays
+
+    def zeros_at(self, *places: tuple[Any, str, int]) -> Array:
+        """Zeros behind pointers of structs, one after the other in one array: struct, name of its field, number."""
+        array, at = np.zeros(1 + sum([size for _, _, size in places])), 0
+        first = self.shared(array)
+        for struct, name, size in places:
+            setattr(struct, name, first + at)
+            at += size
+        return array
 
     def own(self, kind: str, values: Sequence[Any] | int) -> Any:
         """Owned C array of a type such as "int32_t[]", from values or of a given length; at least one element long."""

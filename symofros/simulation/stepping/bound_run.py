@@ -5,6 +5,7 @@ from __future__ import annotations
 import math
 from collections.abc import Callable, Sequence
 from typing import Any
+from weakref import WeakKeyDictionary
 
 import numpy as np
 
@@ -18,7 +19,7 @@ from symofros.simulation.actions import Actions, plan_actions
 from symofros.simulation.events import opens_of
 from symofros.simulation.inputs import InputPlan
 from symofros.simulation.stepping.methods import Method
-from symofros.simulation.stepping.tableaus import fill_tableau
+from symofros.simulation.stepping.tableaus import native_tableau
 from symofros.simulation.user_functions import named_function
 
 _INPUT_CALLBACK = "int32_t(void *, double, const double *, const double *, double *)"
@@ -73,52 +74,35 @@ class BoundRun:
         self.failure: BaseException | None = None
         self.beams = model.beams(par)
         self.kernels: dict[str, CompiledKernel] = {}
-        self.system = self.ffi.new("sym_system *")
+        mechanism, memory = _mechanism_of(model)
+        self.memory.keep(memory)
+        self.system = self.ffi.new("sym_system *", mechanism[0])
         self.run = self.ffi.new("sym_run *")
-        self.run.q, self.run.v = self.memory.zeros(model.nq), self.memory.zeros(model.nv)
-        self._fill_system()
+        self.run.system = self.system
+        self._fill_method()
+        self._place()
         self._fill_beams()
-        self._fill_sticking()
+        if model.record.sticking:
+            self.system.held = self.memory.own("int32_t[]", len(model.record.sticking))
+            self._hold()
         self._fill_inputs(inputs)
         self._fill_events()
         self._bind_functions()
-        self._fill_method()
-        self.run.system = self.system
         self._fill_actions(plan(model, events))
         self._fill_contacts()
 
-    def _fill_system(self) -> None:
-        """Sizes, segments, and the evaluation point."""
-        model, system, memory = self.model, self.system, self.memory
-        system.nq, system.nv, system.nu, system.nc = model.nq, model.nv, model.nu, model.nc
-        kinds = constants()
-        segments = [(kinds[s.constant], s.q, s.v, s.size) for s in model.record.segments]
-        system.n_segments, system.segments = len(segments), memory.own("sym_segment[]", segments)
-        on_speeds = [int(name in model.record.speed_conditions) for name in model.names.constraints]
-        system.on_speeds = memory.own("int32_t[]", on_speeds)
-        system.group = memory.own("int32_t[]", list(model.record.measures.group))
-        quaternions = model.record.quaternion_inputs
-        system.n_quaternion_inputs, system.quaternion_inputs = len(quaternions), memory.own("int32_t[]", quaternions)
-        sizes = {"q": model.nq, "v": model.nv, "u": model.nu, "t": 1, "gains": 2 * model.nc}
-        for name, size in (sizes | {"a": model.nv, "lam": model.nc, "rank": 1}).items():
-            setattr(system, name, memory.zeros(size))
-
-    def _fill_sticking(self) -> None:
-        """Coordinates with friction that sticks (docs/theory/constraints.md, section 14)."""
-        system, memory, sticking = self.system, self.memory, self.model.record.sticking
-        system.n_sticking, system.held = len(sticking), memory.own("int32_t[]", len(sticking))
-        system.sticking = memory.own("sym_sticking[]", [(one.q, one.v, one.mode, one.row) for one in sticking])
-        self._hold()
+    def _place(self) -> None:
+        """Memory of the present state and of the evaluation point, in one array."""
+        run, system = self.run, self.system
+        nq, nv, nc = system.nq, system.nv, system.nc
+        places = [(run, "q", nq), (run, "v", nv), (system, "q", nq), (system, "v", nv), (system, "u", system.nu)]
+        places += [(system, "t", 1), (system, "a", nv), (system, "lam", nc), (system, "rank", 1)]
+        self._point = self.memory.zeros_at(*places, (system, "gains", 2 * nc))
 
     def _fill_contacts(self) -> None:
         """Balls of rigid contacts (docs/theory/constraints.md, section 15)."""
-        system, memory, balls = self.system, self.memory, self.model.record.rigid_contacts
-        system.n_contacts, system.npar = len(balls), self.model.npar
-        rows = [
-            (ball.mode, list(ball.pushes), list(ball.way), ball.apart, ball.pole, list(ball.rows)) for ball in balls
-        ]
-        system.contacts = memory.own("sym_rigid_contact[]", rows)
-        if not balls:
+        system, memory = self.system, self.memory
+        if not self.model.record.rigid_contacts:
             return
         if not self.method.family.rigid_contacts:
             self.model.record.refuse_rigid_contacts(f"simulation by '{self.method.name}'", by_method=True)
@@ -136,15 +120,22 @@ class BoundRun:
         return self.memory.view(self.system.contact_memory, size)
 
     def _hold(self) -> None:
-        """Tell which coordinates friction holds, by their modes."""
+        """Tell which coordinates friction holds, by their modes (docs/theory/constraints.md, section 14)."""
         for i, one in enumerate(self.model.record.sticking):
             self.system.held[i] = self.par[one.mode] == HELD
 
     def _fill_beams(self) -> None:
         """What judges the bending of the beams, and memory for the largest of each."""
-        system, run, memory = self.system, self.run, self.memory
-        firsts = np.cumsum([0, *(beam.size for beam in self.beams)])
-        system.n_beams = len(self.beams)
+        system, run, memory, n = self.system, self.run, self.memory, len(self.beams)
+        run.beam_limit = math.inf
+        firsts = np.cumsum([0, *[beam.size for beam in self.beams]])
+        size = int(firsts[-1])
+        places = [(run, "beam_reference", 2 * size), (run, "beam_weight", self.model.nv)]
+        record = memory.zeros_at((run, "beam_error", n), (run, "beam_t", n), (run, "beam_q", size), *places)
+        self.beam_record = record[:n], record[n : 2 * n], record[2 * n : 2 * n + size]
+        if not n:
+            return
+        system.n_beams = n
         system.beams = memory.own(
             "sym_beam[]",
             [
@@ -165,28 +156,21 @@ class BoundRun:
                 for blocks in (beam.angle_blocks,)
             ],
         )
-        run.beam_limit = math.inf
-        run.beam_scale = memory.doubles(np.concatenate([np.zeros(0), *(beam.scale for beam in self.beams)]))
-        run.beam_reference = memory.zeros(2 * int(firsts[-1]))
-        run.beam_guard = memory.own("sym_beam_guard[]", len(self.beams))
-        run.beam_weight = memory.zeros(self.model.nv)
-        run.beam_reach = memory.doubles(np.concatenate([np.zeros(0), *(beam.reach for beam in self.beams)]))
-        self.beam_record = np.zeros(len(self.beams)), np.zeros(len(self.beams)), np.zeros(int(firsts[-1]))
-        run.beam_error, run.beam_t, run.beam_q = (
-            memory.shared(array if array.size else np.zeros(1)) for array in self.beam_record
-        )
+        run.beam_scale = memory.doubles(np.concatenate([beam.scale for beam in self.beams]))
+        run.beam_guard = memory.own("sym_beam_guard[]", n)
+        run.beam_reach = memory.doubles(np.concatenate([beam.reach for beam in self.beams]))
 
     def _fill_inputs(self, inputs: InputPlan) -> None:
         system, memory = self.system, self.memory
         system.u_constant = memory.doubles(inputs.constant)
-        signals = [
-            (index, int(linear), len(t), memory.shared(t), memory.shared(values))
-            for index, t, values, linear in inputs.signals
-        ]
-        system.n_signals, system.signals = len(signals), memory.own("sym_signal[]", signals)
-        indices = sorted(inputs.formulas)
-        system.n_law, system.law_inputs = len(indices), memory.own("int32_t[]", indices)
-        if indices:
+        if inputs.signals:
+            signals = [
+                (index, int(linear), len(t), memory.shared(t), memory.shared(values))
+                for index, t, values, linear in inputs.signals
+            ]
+            system.n_signals, system.signals = len(signals), memory.own("sym_signal[]", signals)
+        if indices := sorted(inputs.formulas):
+            system.n_law, system.law_inputs = len(indices), memory.own("int32_t[]", indices)
             derivatives = self.method.family.implicit
             self._bind("law", self.model.formulas([inputs.formulas[i] for i in indices], derivatives))
         if inputs.callback is not None:
@@ -194,10 +178,10 @@ class BoundRun:
 
     def _fill_events(self) -> None:
         system, memory, events = self.system, self.memory, self.events
-        system.n_events = len(events)
-        system.event_direction = memory.own("int32_t[]", [event.sign for event in events])
-        system.event_terminal = memory.own("int32_t[]", [event.cut for event in events])
         if events:
+            system.n_events = len(events)
+            system.event_direction = memory.own("int32_t[]", [event.sign for event in events])
+            system.event_terminal = memory.own("int32_t[]", [event.cut for event in events])
             formulas = [event.formula for event in events]
             self._bind("events", self.model.formulas(formulas, derivatives=False, reactions=True))
             system.events_of_reactions = int("lam" in dict(self.kernels["events"].signature.inputs))
@@ -322,4 +306,31 @@ class BoundRun:
     def _fill_method(self) -> None:
         self.run.method = constants()[self.method.constant]
         self.native.sym_run_set_defaults(self.run)
-        fill_tableau(self.run.tableau, self.method.tableau, self.memory)
+        self.run.tableau = native_tableau(self.method.tableau)[0][0]  # All methods live as long as the program.
+
+
+# A sym_system that knows the mechanism and nothing of a run, with the memory that it points into, by the model.
+_MECHANISMS: WeakKeyDictionary[Model, tuple[Any, NativeMemory]] = WeakKeyDictionary()
+
+
+def _mechanism_of(model: Model) -> tuple[Any, NativeMemory]:
+    """The mechanism of a model to C, made once: sizes, segments, conditions, friction that sticks, rigid contacts."""
+    if model in _MECHANISMS:
+        return _MECHANISMS[model]
+    record, memory, kinds = model.record, NativeMemory(), constants()
+    system = memory.ffi.new("sym_system *")
+    system.nq, system.nv, system.nu, system.nc = model.nq, model.nv, model.nu, model.nc
+    system.npar, system.n_contacts, system.n_sticking = model.npar, len(record.rigid_contacts), len(record.sticking)
+    system.n_segments, system.n_quaternion_inputs = len(record.segments), len(record.quaternion_inputs)
+    system.segments = memory.own("sym_segment[]", [(kinds[s.constant], s.q, s.v, s.size) for s in record.segments])
+    on_speeds = [int(name in record.speed_conditions) for name in model.names.constraints]
+    system.on_speeds = memory.own("int32_t[]", on_speeds)
+    system.group = memory.own("int32_t[]", list(record.measures.group))
+    system.quaternion_inputs = memory.own("int32_t[]", record.quaternion_inputs)
+    system.sticking = memory.own("sym_sticking[]", [(one.q, one.v, one.mode, one.row) for one in record.sticking])
+    balls = [
+        (ball.mode, list(ball.pushes), list(ball.way), ball.apart, ball.pole, list(ball.rows))
+        for ball in record.rigid_contacts
+    ]
+    system.contacts = memory.own("sym_rigid_contact[]", balls)
+    return _MECHANISMS.setdefault(model, (system, memory))

@@ -66,6 +66,8 @@ class Recorded:
 
     def arrays(self) -> list[Array]:
         """All records: t (n), q (n, nq), v (n, nv), u (n, nu)."""
+        if len(self.states) == 1:
+            return list(self.states[0])
         return [np.concatenate(parts) for parts in zip(*self.states, strict=True)]
 
 
@@ -103,7 +105,6 @@ def run_to_end(stepper: Stepper, q: Array, v: Array, settings: Settings, show: S
 def _run_own(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show) -> Recorded:
     """Run our own integrator to its end, or to `max_steps`."""
     recorded = Recorded(stepper.start(q, v, max(_ROWS, len(settings.grid))))
-    recorded.take(stepper)
     counted = stepper.counted or []
     values = stepper.par[counted]
 
@@ -114,7 +115,10 @@ def _run_own(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Sho
             values = stepper.par[counted]
         return steps if settings.max_steps is None else min(steps, settings.max_steps - int(stepper.run.steps))
 
-    return drive(stepper, recorded, most, lambda _: show(stepper.t))
+    drive(stepper, recorded, most, lambda _: show(stepper.t))
+    if not recorded.states:  # It ends where it starts.
+        recorded.take(stepper)
+    return recorded
 
 
 def _run_sundials(stepper: Stepper, q: Array, v: Array, settings: Settings, show: Show) -> Recorded:

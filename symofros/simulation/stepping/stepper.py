@@ -3,12 +3,12 @@
 from __future__ import annotations
 
 import re
-from collections.abc import Iterator, Sequence
-from contextlib import contextmanager
+from collections.abc import Sequence
 from functools import cached_property
 from typing import Any
 
 import numpy as np
+import numpy.typing as npt
 
 from symofros.base.arrays import Array, Mask
 from symofros.base.measures import ROTATION
@@ -263,26 +263,9 @@ class Stepper(BoundRun):
         """Write the rate y' = (N v, v') of a state y = (q, v) into `rate`; returns a Status."""
         return int(self.native.sym_run_rate(self.run, t, self._pointer(y), self._pointer(rate)))
 
-    @contextmanager
-    def preserved(self) -> Iterator[None]:
+    def preserved(self) -> _Preserved:
         """Within, states may be placed and functions evaluated; afterwards the run is where it was."""
-        run, system, model, failure = self.run, self.system, self.model, self.failure
-        sizes = [(run.q, model.nq), (run.v, model.nv), (system.q, model.nq), (system.v, model.nv), (system.t, 1)]
-        sizes += [
-            (system.u, model.nu),
-            (system.u_constant, model.nu),
-            (system.a, model.nv),
-            (system.lam, model.nc),
-            (system.rank, 1),
-        ]
-        views = [self.memory.bytes_at(pointer, size) for pointer, size in sizes]
-        kept, t, evaluations = [view[:] for view in views], run.t, run.evaluations
-        try:
-            yield
-        finally:
-            for view, values in zip(views, kept, strict=True):
-                view[:] = values
-            run.t, run.evaluations, self.failure = t, evaluations, failure
+        return _Preserved(self)
 
     def spectrum(
         self, t: float, q: Array, v: Array, u: Array, h: float, dimension: int, moving: Mask | None = None
@@ -318,7 +301,7 @@ class Stepper(BoundRun):
         return np.equal(self.model.record.measures.kinds(self.model.nv), ROTATION)
 
     def accelerations(self, t: Array, q: Array, v: Array) -> tuple[Array, Array] | None:
-        """Accelerations (n, nv) and inputs (n, nu) at states of the motion; within `preserved`.
+        """Accelerations (n, nv) and inputs (n, nu) at states of the motion; the run stays where it is.
 
         Each state is projected onto the constraints first, where the run is.
 
@@ -333,7 +316,24 @@ class Stepper(BoundRun):
         n = len(t)
         a, u = np.empty((n, self.model.nv)), np.empty((n, self.model.nu))
         arrays = [self._pointer(x) for x in (*map(np.ascontiguousarray, (t, q, v)), u, a)]
-        return (a, u) if self.native.sym_run_accelerations(self.run, n, *arrays) == 0 else None
+        with self.preserved():
+            status = self.native.sym_run_accelerations(self.run, n, *arrays)
+        return (a, u) if status == 0 else None
+
+    def path(self, ends: Sequence[Array], which: npt.NDArray[np.intp], x: Array) -> tuple[Array, Array, Array, Array]:
+        """Time (m), q (m, nq), v and a (m, nv) of the cubics through ends of intervals, (18a).
+
+        Args:
+            ends: The ends, contiguous: t (n) [s], q (n, nq), v (n, nv), accelerations (n, nv).
+            which: Numbers of intervals (m).
+            x: Shares of these (m).
+        """
+        (nq, nv), m, ffi = (self.model.nq, self.model.nv), len(x), self.ffi
+        made = np.empty(m), np.empty((m, nq)), np.empty((m, nv)), np.empty((m, nv))
+        read, work = [self._pointer(y) for y in ends], np.empty(3 * nv)
+        where = ffi.from_buffer("int64_t[]", which), self._pointer(x), self._pointer(work)
+        self.native.sym_run_path(self.run, *read, m, *where, *[self._pointer(y) for y in made])
+        return made
 
     def configuration_rate(self, q: Array, w: Array) -> Array:
         """The rate N w (nq) at speeds w (nv) and the configuration that was placed last; q: its numbers."""
@@ -370,3 +370,19 @@ class Stepper(BoundRun):
         """The t, q, v at which functions were evaluated last; of a step that failed, where it failed."""
         system, copy = self.system, self.memory.copy
         return float(system.t[0]), copy(system.q, self.model.nq), copy(system.v, self.model.nv)
+
+
+class _Preserved:
+    """Puts a stepper's present state and evaluation point back at the end of a block."""
+
+    def __init__(self, stepper: Stepper) -> None:
+        self._stepper = stepper
+
+    def __enter__(self) -> None:
+        run, of = self._stepper.run, self._stepper
+        self._inputs = of.memory.bytes_at(of.system.u_constant, of.system.nu)
+        self._kept = of._point.copy(), self._inputs[:], run.t, run.evaluations, of.failure
+
+    def __exit__(self, *_: object) -> None:
+        run, of = self._stepper.run, self._stepper
+        of._point[:], self._inputs[:], run.t, run.evaluations, of.failure = self._kept

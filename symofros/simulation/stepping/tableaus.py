@@ -4,6 +4,7 @@ from __future__ import annotations
 
 from dataclasses import dataclass, field
 from fractions import Fraction
+from functools import cache
 from typing import Any
 
 import numpy as np
@@ -13,7 +14,7 @@ from symofros.runtime.calls import NativeMemory
 from symofros.simulation.stepping import dop853
 
 
-@dataclass(frozen=True)
+@dataclass(frozen=True, eq=False)
 class Tableau:
     """A one-step method of several stages.
 
@@ -47,8 +48,11 @@ class Tableau:
     d: Array = field(default_factory=lambda: np.zeros(0))
 
 
-def fill_tableau(struct: Any, tableau: Tableau, memory: NativeMemory) -> None:
-    """Write a method's coefficients into a sym_tableau."""
+@cache
+def native_tableau(tableau: Tableau) -> tuple[Any, NativeMemory]:
+    """A method's coefficients as a sym_tableau, which all runs share, and the memory that it points into."""
+    memory = NativeMemory()
+    struct = memory.ffi.new("sym_tableau *")
     struct.stages, struct.dense_stages, struct.fsal_stage = tableau.stages, len(tableau.b), tableau.last
     struct.estimate_order, struct.n_estimates = tableau.error_order, len(tableau.errors)
     struct.dense_degree, struct.gamma = tableau.dense.shape[1], tableau.gamma
@@ -57,6 +61,7 @@ def fill_tableau(struct: Any, tableau: Tableau, memory: NativeMemory) -> None:
     arrays = {"a": tableau.a, "b": tableau.b, "c": tableau.c, "e": e, "e2": e2, "dense": tableau.dense}
     for name, values in (arrays | {"coupling": tableau.coupling, "d": tableau.d}).items():
         setattr(struct, name, memory.doubles(values))
+    return struct, memory
 
 
 def _numbers(text: str) -> Array:

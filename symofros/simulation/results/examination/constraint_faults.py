@@ -40,9 +40,10 @@ _VIOLATED = 0.1
 
 def jump(stepper: Stepper, status: int) -> Jump | None:
     """A condition whose row of G is not continuous about the last state of a run that has failed."""
+    if status not in _SINGULAR_ENDS or not stepper.model.nc:
+        return None
     t, q, v = stepper.state
-    failed = status in _SINGULAR_ENDS and t < float(stepper.run.t_end)
-    if not failed or not stepper.model.nc or not (np.all(np.isfinite(q)) and np.all(np.isfinite(v))):
+    if not t < float(stepper.run.t_end) or not (np.all(np.isfinite(q)) and np.all(np.isfinite(v))):
         return None
     return jump_ahead(stepper.model, t, q, v, stepper.inputs_now, stepper.par)
 

@@ -28,8 +28,7 @@ def creep_note(run: ExaminedRun) -> str:
     stepper, (t, q, v, u) = run.stepper, (x[-1:] for x in run.states)
 
     def acceleration() -> Array | None:
-        with stepper.preserved():
-            found = stepper.accelerations(t, q, v)
+        found = stepper.accelerations(t, q, v)
         return None if found is None else found[0][0]
 
     return creep_note_at(run.model, [x[0] for x in (t, q, v, u)], stepper.par, acceleration) if len(v) else ""

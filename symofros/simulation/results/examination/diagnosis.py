@@ -108,11 +108,11 @@ class _End:
         return self.run.settings
 
     def outcome(self, kind: Kind, reason: str, advice: str = "") -> Outcome:
-        return Outcome(kind, self.stepper.state[0], reason, advice, self.notes)
+        return Outcome(kind, self.stepper.t, reason, advice, self.notes)
 
     def by_status(self, reason: str = "") -> Outcome:
         """The outcome that its status stands for, with a more specific reason."""
-        return ENDS[self.status].outcome(self.stepper.state[0], self.notes, reason)
+        return ENDS[self.status].outcome(self.stepper.t, self.notes, reason)
 
 
 def outcome_of(
@@ -142,7 +142,7 @@ def _stopped(end: _End) -> Outcome | None:
     """Outcome of a run stopped by Ctrl-C, a terminal event or an invalid input; None otherwise."""
     failure = end.stepper.failure
     if end.interrupted or isinstance(failure, KeyboardInterrupt):
-        return INTERRUPTED.outcome(end.stepper.state[0], end.notes)
+        return INTERRUPTED.outcome(end.stepper.t, end.notes)
     if end.status == Status.TERMINAL_EVENT:
         return end.by_status(f"event '{end.stepper.events[end.stepper.run.terminal_event].name}'")
     if end.fault:
@@ -173,7 +173,10 @@ def _without_direction(end: _End) -> Outcome | None:
 
 def _grown(end: _End) -> Outcome | None:
     """Outcome of a run whose states have grown without bound; None otherwise."""
-    settings, (_, q, v) = end.settings, end.stepper.state
+    settings = end.settings
+    if end.status != Status.DIVERGED and not end.failed:
+        return None
+    _, q, v = end.stepper.state
     if end.failed and end.mode is not None and end.mode.amplified:
         reason = f"{past_stability(settings.method.name)}; {_largest(end.stepper, q, v)}"
         return end.outcome("diverged", reason, remedy(end.mode, settings.method))
@@ -187,12 +190,12 @@ def _grown(end: _End) -> Outcome | None:
 
 def _stuck(end: _End) -> Outcome | None:
     """Outcome of a run that ends singular, at too small a step, off its constraints or with energy lost; else None."""
-    settings, stepper, (_, q, v) = end.settings, end.stepper, end.stepper.state
+    settings, stepper = end.settings, end.stepper
     if end.status in (Status.SINGULAR, Status.NO_CONVERGENCE):
         return too_long(end.run, end.by_status())
     if end.status == Status.STEP_TOO_SMALL:
         bounds = f"rtol = {settings.rtol:g}, atol = {settings.atol:g} ask for steps below rounding"
-        return end.by_status(f"{bounds}; {_largest(stepper, q, v)}")
+        return end.by_status(f"{bounds}; {_largest(stepper, *stepper.state[1:])}")
     if end.status == Status.PROJECTION_FAILED:
         t_open, q_open, _ = stepper.evaluation_point
         phi = stepper.model.constraint(q_open, u=stepper.inputs_now, par=stepper.par, t=t_open)
@@ -220,13 +223,13 @@ def _beyond_theory(end: _End) -> Outcome | None:
         return None
     if end.status != Status.BEYOND_THEORY and not (end.status >= 0 and most_bent.error > limit):
         return None
-    return beyond_theory(most_bent, limit, end.notes, end.stepper.state[0])
+    return beyond_theory(most_bent, limit, end.notes, end.stepper.t)
 
 
 def _unfinished(end: _End) -> Outcome | None:
     """After the most steps."""
     run, settings = end.stepper.run, end.settings
-    if end.status != Status.RUNNING or not end.stepper.state[0] < float(run.t_end):
+    if end.status != Status.RUNNING or not end.stepper.t < float(run.t_end):
         return None
     done, h = f"max_steps: {end.run.steps} steps are done", float(run.next_step)
     if settings.adaptive and 0.0 < h < _CREEP * (settings.t_end - settings.t0):

@@ -6,7 +6,6 @@ docs/theory/simulation.md, section 8.
 from __future__ import annotations
 
 import math
-from functools import cache
 from typing import NamedTuple
 
 import numpy as np
@@ -70,25 +69,25 @@ def passed_over(run: ExaminedRun, ends: States, least: float, size: float) -> tu
         size: Speed of the motion, in the norm of the kinetic energy.
     """
     stepper, (t, _, _, u) = run.stepper, ends
-    steps = np.arange(len(t) - 1)
+    steps, paths = len(t) - 1, list[Cubics]()
 
-    @cache
     def path() -> Cubics:
-        found = Cubics.of(stepper, ends, steps)
-        if found is None or not np.all(np.isfinite(found.ends[3])):
-            raise _NoPathError
-        return found
+        if not paths:
+            found = Cubics.of(stepper, ends, np.ones(steps, dtype=bool))
+            if found is None or not np.all(np.isfinite(found.ends[3])):
+                raise _NoPathError
+            paths.append(found)
+        return paths[0]
 
     def states(times: Array) -> dict[str, Array]:
-        i = np.clip(np.searchsorted(t, times, side="right") - 1, 0, len(steps) - 1)
+        i = np.clip(np.searchsorted(t, times, side="right") - 1, 0, steps - 1)
         _, q, v, _ = path().at(i, (times - t[i]) / (t[i + 1] - t[i]))
         return {"q": q, "v": v, "u": u[i]}
 
     try:
-        with stepper.preserved(), np.errstate(all="ignore"):  # What has exploded overflows.
-            formulas = list(stepper.inputs.formulas.values())
+        with np.errstate(all="ignore"):  # What has exploded overflows.
             motion = Motion(states, t)
-            found = run.model.formula_instants(formulas, stepper.par, float(t[0]), float(t[-1]), motion)
+            found = run.model.formula_instants(stepper.laws, stepper.par, float(t[0]), float(t[-1]), motion)
             if not len(found):
                 return 0, 0.0, 0.0
             parts = _parts(t, found)

@@ -4,18 +4,14 @@ from __future__ import annotations
 
 from collections.abc import Sequence
 from dataclasses import dataclass
-from functools import cached_property
-from typing import Any
 
 import numpy as np
 import numpy.typing as npt
 
-from symofros.base.arrays import Array
-from symofros.runtime.manifold import chart_coordinates, chart_rate, retract
-from symofros.runtime.record import Segment
+from symofros.base.arrays import Array, Mask
 from symofros.simulation.stepping.stepper import Stepper
 
-Numbers = npt.NDArray[np.integer[Any]]
+Numbers = npt.NDArray[np.intp]
 
 
 @dataclass(frozen=True)
@@ -39,44 +35,34 @@ class Path:
 
 @dataclass(frozen=True)
 class Cubics:
-    """The cubics through the ends of intervals, with their rates there.
+    """The cubics through the ends of intervals.
 
     Attributes:
-        segments: Segments of the configuration.
-        begins: Times (k) [s], configurations (k, nq), speeds (k, nv) and accelerations (k, nv) where intervals begin.
-        ends: The same where they end.
+        stepper: Stepper of the run.
+        ends: Ends of intervals, one after the other: t (n) [s], q (n, nq), v (n, nv), and accelerations (n, nv).
     """
 
-    segments: Sequence[Segment]
-    begins: tuple[Array, Array, Array, Array]
+    stepper: Stepper
     ends: tuple[Array, Array, Array, Array]
 
-    @cached_property
-    def _chart(self) -> tuple[Array, Array]:
-        """Displacements over the intervals (k, nv), and their rates at the ends."""
-        (_, q0, _, _), (_, q1, v1, _) = self.begins, self.ends
-        theta = chart_coordinates(self.segments, q0, q1)
-        return theta, chart_rate(self.segments, theta, v1)
-
     @classmethod
-    def of(cls, stepper: Stepper, states: Sequence[Array], chosen: Numbers) -> Cubics | None:
-        """Cubics of intervals between recorded t (n), q, v; None where a user's function fails. In `preserved`."""
-        places, both = states[:3], list[tuple[Array, Array, Array, Array]]()
-        for numbers in (chosen, chosen + 1):
-            t, q, v = (y[numbers] for y in places)
+    def of(cls, stepper: Stepper, states: Sequence[Array], chosen: Mask) -> Cubics | None:
+        """Cubics of some intervals between recorded t (n), q, v: chosen (n - 1). None where a user's function fails."""
+        t, q, v = map(np.ascontiguousarray, states[:3])
+        if chosen.all():
             found = stepper.accelerations(t, q, v)
-            if found is None:
-                return None
-            both.append((t, q, v, found[0]))
-        return cls(stepper.model.record.segments, *both)
+            return None if found is None else cls(stepper, (t, q, v, found[0]))
+        a, rows = np.full(v.shape, np.nan), np.append(chosen, False)
+        rows[1:] |= chosen
+        found = stepper.accelerations(t[rows], q[rows], v[rows])
+        if found is None:
+            return None
+        a[rows] = found[0]
+        return cls(stepper, (t, q, v, a))
 
     def at(self, which: Numbers, x: Array) -> tuple[Array, Array, Array, Array]:
         """Time (m), q (m, nq), v and a (m, nv) of the path at shares x (m) of intervals, by their numbers (m)."""
-        (t0, q0, v0, a0), (t1, _, v1, a1), (theta, rate), i = self.begins, self.ends, self._chart, which
-        h = (t1 - t0)[i]
-        along, _ = _cubic(x, h[:, np.newaxis], (0.0 * theta[i], v0[i]), (theta[i], rate[i]))
-        v_x, path_a = _cubic(x, h[:, np.newaxis], (v0[i], a0[i]), (v1[i], a1[i]))
-        return t0[i] + x * h, retract(self.segments, q0[i], along), v_x, path_a
+        return self.stepper.path(self.ends, which, x)
 
 
 def path_within(stepper: Stepper, states: Sequence[Array], counts: Numbers) -> Path | None:
@@ -90,27 +76,13 @@ def path_within(stepper: Stepper, states: Sequence[Array], counts: Numbers) -> P
     Returns:
         None where a function of the user's fails.
     """
-    chosen = np.flatnonzero(counts)
-    number = counts[chosen]
-    at = np.repeat(np.arange(len(chosen)), number)  # Which of the chosen intervals each state lies in.
-    x = (np.arange(len(at)) - np.repeat(np.cumsum(number) - number, number) + 0.5) / number[at]
-    with stepper.preserved(), np.errstate(all="ignore"):  # What has exploded overflows.
-        cubics = Cubics.of(stepper, states, chosen)
-        if cubics is None:
-            return None
-        t_x, q_x, v_x, path_a = cubics.at(at, x)
-        inside = stepper.accelerations(t_x, q_x, v_x)
+    interval = np.arange(len(counts)).repeat(counts)
+    x = (np.arange(len(interval)) - (counts.cumsum() - counts)[interval] + 0.5) / counts[interval]
+    cubics = Cubics.of(stepper, states, counts > 0)
+    if cubics is None:
+        return None
+    t_x, q_x, v_x, path_a = cubics.at(interval, x)
+    inside = stepper.accelerations(t_x, q_x, v_x)
     if inside is None:
         return None
-    return Path(chosen[at], x, [t_x, q_x, v_x, inside[1]], inside[0], path_a)
-
-
-def _cubic(x: Array, h: Array, begin: tuple[Array, Array], end: tuple[Array, Array]) -> tuple[Array, Array]:
-    """Values and rates (m, n) at shares x (m) of intervals h (m, 1) [s] of cubics, given both at the ends."""
-    x = x[:, np.newaxis]
-    (y0, r0), (y1, r1) = begin, end
-    change = y1 - y0 - h * r0
-    bend = h * (r1 - r0)
-    value = y0 + x * (h * r0 + x * (3.0 * change - bend + x * (bend - 2.0 * change)))
-    rate = r0 + x * (2.0 * (3.0 * change - bend) + 3.0 * x * (bend - 2.0 * change)) / h
-    return value, rate
+    return Path(interval, x, [t_x, q_x, v_x, inside[1]], inside[0], path_a)

@@ -143,14 +143,16 @@ class ExaminedRun(HeldRun):
             return None
         try:
             kinetic = model.kinetic_energy(q, v, u=u, par=par)
-            return kinetic, kinetic + model.potential_energy(q, u=u, par=par, t=t, z=model.states_of(v))
+            z = model.states_of(v) if model.nz else None
+            return kinetic, kinetic + model.potential_energy(q, u=u, par=par, t=t, z=z)
         except SymofrosError:  # Options.functions left them out.
             return None
 
     @cached_property
     def _some(self) -> States:
         """Some of the records, the last one among them."""
-        return [x[:: -max(1, len(x) // _SPEEDS)] for x in self.states]
+        stride = max(1, len(self.states[0]) // _SPEEDS)
+        return [np.ascontiguousarray(x[::-stride]) for x in self.states]  # As C reads them.
 
     @cached_property
     def _rest_of_some(self) -> tuple[Array, float]:
@@ -165,7 +167,7 @@ class ExaminedRun(HeldRun):
         except (SymofrosError, np.linalg.LinAlgError):  # Options.functions left them out; what moves no mass.
             return self.metrics(q, u), 0.0
         M = self._of_motion(M)
-        return M, max(float(np.nan_to_num(norms_in(M, alone[..., k])).max(initial=0.0)) for k in range(2))
+        return M, float(np.nan_to_num(norms_in(M, alone.swapaxes(1, 2))).max(initial=0.0))
 
     @property
     def _metrics_of_some(self) -> Array:

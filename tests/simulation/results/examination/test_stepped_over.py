@@ -8,13 +8,14 @@ from typing import Any
 
 import numpy as np
 import pytest
+from numpy.polynomial import polynomial
 
 import symofros as sf
 from symofros.generator.codegen import interpreted
 from symofros.simulation.inputs import plan_inputs
 from symofros.simulation.options import SimulationOptions
 from symofros.simulation.results.examination import diagnosis, stepped_over
-from symofros.simulation.results.examination.paths import _cubic, path_within
+from symofros.simulation.results.examination.paths import path_within
 from symofros.simulation.results.examination.run import ExaminedRun
 from symofros.simulation.results.examination.stepped_over import _bounds_of_sums, _largest_sums
 from symofros.simulation.settings import Settings
@@ -255,15 +256,18 @@ def test_a_slide_that_is_made_once_more_is_the_run(wind: float, monkeypatch: pyt
 
 
 def test_a_cubic_is_met_by_its_ends(rng: np.random.Generator) -> None:
-    """Values and rates of any cubic, wherever they are asked for."""
-    c, x, h = rng.standard_normal((4, 5, 2)), rng.uniform(size=5), rng.uniform(0.1, 2.0, (5, 1))
-
-    def at(share: np.ndarray) -> tuple[np.ndarray, np.ndarray]:
-        t = share * h
-        return c[0] + t * (c[1] + t * (c[2] + t * c[3])), c[1] + t * (2.0 * c[2] + 3.0 * t * c[3])
-
-    found = _cubic(x, h, at(np.zeros((5, 1))), at(np.ones((5, 1))))
-    np.testing.assert_allclose(found, at(x[:, np.newaxis]), atol=1e-12)
+    """Coordinates that are cubics of time, or speeds, with their rates, wherever they are asked for."""
+    model = compiled("double_pendulum")
+    stepper = Stepper(model, METHODS["rk4"], plan_inputs(model, None), (), model.parameter_values)
+    t, which, x = np.array([0.3, 0.5, 1.7, 1.8]), np.array([0, 2, 2, 1, 1]), rng.uniform(size=5)
+    cubic = rng.standard_normal((4, 2))
+    slope, bend = polynomial.polyder(cubic), polynomial.polyder(cubic, 2)
+    for of, cubics in (((cubic, slope, bend), slice(0, 3)), ((0.0 * cubic, cubic, slope), slice(1, 3))):
+        q, v, a = (np.ascontiguousarray(polynomial.polyval(t, c).T) for c in of)
+        t_x, *found = stepper.path((t, q, v, a), which, x)
+        np.testing.assert_allclose(t_x, t[which] + x * np.diff(t)[which], rtol=1e-15)
+        for got, c in zip(found[cubics], of[cubics], strict=True):
+            np.testing.assert_allclose(got, polynomial.polyval(t_x, c).T, atol=1e-12)
 
 
 @pytest.mark.parametrize("name", ["torque_free_body", "slider_crank"])
