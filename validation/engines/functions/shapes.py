@@ -2,6 +2,7 @@
 
 from __future__ import annotations
 
+from ..truth.derived import TruthOf
 from ..truth.geometry import shapes
 from .function import Function, functions_of
 
@@ -25,7 +26,7 @@ def _distances() -> dict[str, Function]:
 
 def _surfaces() -> dict[str, Function]:
     """Surfaces of triangles around solids of the sizes x = |v| + 1/2; a volume has the sign of its surface."""
-    rows = {
+    rows: dict[str, tuple[str, TruthOf]] = {
         "volume_of_prism": ("of a prism of four sides, x[0] to its edges, x[1] long (1)", shapes.prism_volume),
         "volume_of_pyramid": ("of a pyramid on such a base, x[1] high (1)", shapes.pyramid_volume),
         "volume_of_ring": ("of a ring of four sides, from x[0] to x[0] + x[1], x[2] high (1)", shapes.ring_volume),
