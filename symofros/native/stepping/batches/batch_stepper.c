@@ -87,7 +87,7 @@ SYM_EXPORT int32_t sym_batch_start(sym_batch *b, double *memory, double *shared)
         s->held = b->held + (size_t)i * (size_t)s->n_sticking;
         sym_system_bind(s, &s->forward_dynamics);
         s->signals = b->signals + (size_t)i * (size_t)s->n_signals;
-        memcpy(b->signals + (size_t)i * (size_t)s->n_signals, prototype->signals, (size_t)s->n_signals * sizeof *b->signals);
+        if (s->n_signals > 0) memcpy(s->signals, prototype->signals, (size_t)s->n_signals * sizeof *b->signals);
         r->system = s;
         r->q = b->states + (size_t)i * ((size_t)s->nq + (size_t)s->nv), r->v = r->q + s->nq;
     }
