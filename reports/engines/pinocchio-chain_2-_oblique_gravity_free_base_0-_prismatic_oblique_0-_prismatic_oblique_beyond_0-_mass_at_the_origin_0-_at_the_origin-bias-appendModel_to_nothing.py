@@ -1,0 +1,22 @@
+# pinocchio 4.1.0, chain 2: oblique gravity, free base, 0: prismatic oblique, 0: prismatic oblique beyond, 0: mass at the origin, 0: at the origin: appendModel to nothing, nonLinearEffects is wrong (h: Coriolis, centrifugal and gravity forces).
+import numpy as np
+import pinocchio as pin
+m = pin.Model()
+m.gravity.linear = np.array([0.0, 0.0, 0.0])
+j0 = m.addJoint(0, pin.JointModelFreeFlyer(), pin.SE3.Identity(), 'a')
+m.appendBodyToJoint(j0, pin.Inertia(1.0, np.array([0.0, 0.0, 0.0]), np.array([[1.0, 0.0, 0.0], [0.0, 1.0, 0.0], [0.0, 0.0, 1.0]])), pin.SE3.Identity())
+fs = [m.addFrame(pin.Frame('f0', j0, 0, pin.SE3.Identity(), pin.FrameType.OP_FRAME))]
+js = [j0]
+d = m.createData()
+q = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0, 1.0])
+v = np.array([0.0, 0.0, 0.0, 0.0, 0.0, 0.0])
+if globals().get('made_by') != 'appendModel to nothing':
+    made_by = 'appendModel to nothing'
+    n = pin.Model()
+    n.gravity = m.gravity
+    m = pin.appendModel(n, m, 0, pin.SE3.Identity())
+    d = m.createData()
+value = pin.nonLinearEffects(m, d, q, v)
+import numpy as np
+value, expected = np.reshape(value, (6,))[(2,)], 0.0
+assert abs(value - expected) <= 1.0e-12, f"{value = }, {expected = }"
