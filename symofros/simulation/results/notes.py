@@ -186,7 +186,7 @@ NOTES: Mapping[str, NoteKind] = {
         "`retain: all`, `first_order` where axial forces or rotation are left out, or functions that are named",
     ),
     "too few functions": NoteKind(
-        "beam '…' has too few shape functions for mode …: its frequency of … rad/s is too high by about … %…",
+        "beam '…' has too few shape functions for mode …: its frequency of … rad/s is too high…",
         "the frequency of a mode is off by more than 5 %, as a beam's functions do not have its shape",
         "more functions, or segments; or ignore the mode",
     ),

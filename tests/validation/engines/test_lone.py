@@ -113,7 +113,7 @@ def test_builders_of_newton_make_what_is_stated() -> None:
 
 def test_depths_of_solids_and_meshes_that_are_mirrored_are_asked_of_mujoco() -> None:
     """Half a depth, that of a ball on the surface, a normal scaled as its vertex, a face from inside are red."""
-    require("mujoco", "engine-mujoco")
+    require("mujoco", "validation")
     planted = {
         "distance_box_in_box:contact": lambda x: x / 2.0,
         "distance_ball_in_box:contact": lambda x: x + 0.125,
