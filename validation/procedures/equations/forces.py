@@ -88,7 +88,8 @@ def carried(loaded: bool = True) -> sf.System:
             position=(0.2, 0.1, 0.0),
             axis=(0.6, 0.0, 0.8),
             elements=(
-                sf.Stop(2.0, upper=-5.0, lower=5.0),
+                sf.Stop(2.0, upper=-5.0),
+                sf.Stop(2.0, lower=5.0),
                 sf.Spring(3.0, rest=0.1, cubic=2.0),
                 sf.Damper(0.2, quadratic=0.2),
                 sf.Damper(0.1),
