@@ -86,8 +86,8 @@ def scaled_steps(scene: Scene, lengths: tuple[tuple[int, ...], tuple[int, ...]])
             )
             q, v = scene.manifold.same_sign(run.q / on_q, path.q), run.v * unit / on_v
             worst = max(worst, _worst((run.t / unit, path.t), (q, path.q), (v, path.v)) + float(not run.outcome.ok))
-        # The partial derivative by time is a forward difference over a span that is none of the scene's times: rounding of
-        # accelerations over it leaves 1.1e-6 by implicit_euler where steps last 30 times as long, at 1 km.
+        # The partial derivative by time is a forward difference over a span that is none of the scene's times: what
+        # rounding of accelerations leaves over it is 1.1e-6 by implicit_euler at 1 km, with steps 30 times as long.
         yield Cell(f"steps by {name} at other scales", worst, 3.0 * DIFFERENCED)
 
 
