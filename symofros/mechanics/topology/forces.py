@@ -1,7 +1,7 @@
 """Conditions on the numbers of contacts and of elements of joints: signs, on which what they do rests.
 
-Of friction its maximum rests on them (docs/theory/rigid.md, (56)-(58)). A force that may well have another sign, as of
-a spring, is none of theirs: `remarks.py`.
+The maximum of friction rests on them (docs/theory/rigid.md, (56)-(58)). A force that may well have another sign, as
+a spring's, is not judged here: `remarks.py`.
 """
 
 from __future__ import annotations
@@ -96,9 +96,9 @@ def element_conditions(system: System) -> Iterator[Condition]:
                 wrong = partial(_wrong, f"{what} sharpness", value, rule, "give a number that is 1 or more", where)
                 yield Condition(((Term(value) - Term(1.0)).value,), "not negative", wrong)
             if isinstance(element, Stop) and element.lower is not None and element.upper is not None:
-                room, rule = (Term(element.upper) - Term(element.lower)).value, "lower <= upper"
-                wrong = partial(_wrong, f"{what} upper less lower", room, rule, "swap them", where)
-                yield Condition((room,), "not negative", wrong)
+                span, rule = (Term(element.upper) - Term(element.lower)).value, "lower <= upper"
+                wrong = partial(_wrong, f"{what} upper minus lower limit", span, rule, "swap them", where)
+                yield Condition((span,), "not negative", wrong)
 
 
 def _wrong(what: str, value: Value, rule: str, remedy: str, where: str, numbers: Numbers) -> Problem:

@@ -143,7 +143,7 @@ def test_numbers_that_make_no_friction_are_refused(entries: dict[str, float], wo
     [
         ({"stiffness": -1.0, "upper": 1.0}, "stop stiffness -1"),
         ({"stiffness": 1.0, "damping": -2.0, "upper": 1.0}, "stop damping -2"),
-        ({"stiffness": 1.0, "lower": 1.0, "upper": -2.0}, "stop upper less lower -3"),
+        ({"stiffness": 1.0, "lower": 1.0, "upper": -2.0}, "stop upper minus lower limit -3"),
     ],
 )
 def test_numbers_that_make_no_stop_are_refused(entries: dict[str, float], said: str) -> None:
